@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
   const couplet::app::Program program{
       .name = "coupler",
       .description =
-          "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
+          "couples a fluid, a structure and a mesh mover, or participants of any kind, each of which is a separate program",
       .declare = [&](couplet::config::Section& section) { declare(section, parameters); },
       .is_coupler = true};
   return couplet::app::run_job(argc, argv, program,

@@ -155,10 +155,9 @@ void check_cavity(const Fluid<D>& fluid, coupling::Scheme scheme) {
   const auto [share, area] = open_share(fluid);
   if (share <= largest_open_share) return;
   throw Error(
-      "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area "
-      "{:.3g} m^2 faces one way): it could move only by changing the volume of an incompressible fluid. The "
-      "pressure level that conserves the volume is not computed; set 'volume-level: structure', or add an "
-      "outlet (a small one far from the interface is enough).",
+      "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area {:.3g} m^2 faces "
+      "one way): it could move only by changing the volume of an incompressible fluid. The pressure level that conserves the "
+      "volume is not computed; set 'volume-level: structure', or add an outlet (a small one far from the interface is enough).",
       share, area);
 }
 

@@ -208,9 +208,8 @@ void FluidParticipant<D>::log_impulse() const {
                                       step_.time, w, no_turn);
   if (speed > 0 && parallel::comm_rank(mesh_.comm) == 0)
     log::warn(
-        "motion: at t = {:g} s its bodies already move at {:.3g} m/s in a fluid at rest, so the first step "
-        "is an impulse (its forces scale with one over the step). Let the motion start from rest (ramp), or "
-        "set the fluid's 'initial-velocity'.",
+        "motion: at t = {:g} s its bodies already move at {:.3g} m/s in a fluid at rest, so the first step is an impulse (its "
+        "forces scale with one over the step). Let the motion start from rest (ramp), or set the fluid's 'initial-velocity'.",
         step_.time, speed);
 }
 
@@ -439,8 +438,7 @@ void FluidParticipant<D>::log_sub_steps() {
         end, now, step_.dt / now, 100 * p.safety_factor, limiter.cause(), limiter.cell, limiter.place.x(),
         limiter.place.y(), limiter.place.z(),
         few ? fmt::format(
-                  "; only {:.2g} % of the cells have a limit below twice that: 'courant: 5' would save "
-                  "sub-steps",
+                  "; only {:.2g} % of the cells have a limit below twice that: 'courant: 5' would save sub-steps",
                   100 * limiter.share)
             : "");
 }

@@ -218,7 +218,7 @@ HeldPoints find_held_points(const mesh::Mesh& mesh, const mesh::Geometry& geomet
     if (is_fixed[v] || is_moved[v]) anything = 1;
   }
   if (parallel::max(mesh.comm, anything) == 0)
-    throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
+    throw Error("No patch constrains the mesh: at least one needs type: fixed, moving or interface.");
   for (std::vector<Tensor3>* tensors : {&held.free, &held.moved})  // a ghost's faces may be on other ranks
     mesh.points.update_ghosts({tensors->data()->data(), tensors->size() * 9}, 9);
   return held;

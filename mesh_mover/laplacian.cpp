@@ -114,7 +114,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
   for (int c = 0; c < dim_; ++c)
     if (!anything_held[c])
       throw Error(
-          "No patch holds the mesh in direction {}: at least one needs type: fixed, moving or interface.",
+          "No patch constrains the mesh in direction {}: at least one needs type: fixed, moving or interface.",
           "xyz"[c]);
   for (Index v = 0; v < mesh_.points.n_local(); ++v)
     for (int c = 0; c < dim_; ++c)

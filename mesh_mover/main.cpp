@@ -24,8 +24,8 @@ class LeastJacobian final : public diagnostics::Diagnostic {
            .number = *least,
            .limit = 0,
            .sentence = fmt::format(
-               "a cell of the moved mesh is folded at a corner, and gradients there are wrong: least "
-               "scaled Jacobian {:.2g} (limit 0)",
+               "a cell of the moved mesh is folded at a corner, so that gradients there are wrong: least scaled Jacobian "
+               "{:.2g} (limit 0)",
                *least),
            .advice =
                "use 'method: barrier' or a finer mesh near the moving walls; quality.csv names the cell"});
@@ -45,8 +45,7 @@ int main(int argc, char** argv) {
   app::Program program{
       .name = "mesh_mover",
       .description =
-          "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or "
-          "rotations",
+          "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or rotations",
       .declare = [&](config::Section& s) { declare(s, parameters); },
       .make =
           [&](const app::ParticipantContext& context) {

@@ -59,7 +59,8 @@ class PseudoSolid final : public MotionMethod {
       for_faces(patch, [&](Index f) { given_face_[f - mesh.n_interior] = 1; });
       for (const Index v : points_of(mesh, patch)) given_point_[v] = 1;
     }
-    if (!held) throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
+    if (!held)
+      throw Error("No patch constrains the mesh: at least one needs type: fixed, moving or interface.");
     // On a point of several patches, holding overrides motion, so that corners stay closed.
     for (const mesh::Patch& patch : mesh.patches)
       if (parameters.boundaries.at(patch.name).motion == BoundaryMotion::fixed)

@@ -46,8 +46,8 @@ mesh::LoadedMesh load_checked(const Parameters& parameters, const app::Participa
           context.name, p.name);
   if (const auto fold = mesh::find_fold(mesh, loaded.geometry))
     throw Error(
-        "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in "
-        "the file) is not behind its face there. Cells overlap or are bent over; remesh there.",
+        "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in the file) lies on "
+        "the wrong side of its face there. Cells overlap or are bent over; remesh there.",
         context.name, fold->centre.x(), fold->centre.y(), fold->centre.z(), fold->cell_id);
   return loaded;
 }
@@ -164,8 +164,8 @@ void Mover::refuse_torn() const {
   for (const Vec3& shift : mesh_.neighbour_shift) size = std::max(size, shift.norm());
   if (gap > most_torn * parallel::max(mesh_.comm, size))
     throw SolveFailure(
-        "participant '{}': the motion from t = {:.6g} s separates the two sides of periodic patches by "
-        "{:.3g} m: both must move alike.",
+        "participant '{}': the motion from t = {:.6g} s separates the two sides of periodic patches by {:.3g} m: both must "
+        "move identically.",
         name_, step_.time, gap);
 }
 
@@ -206,7 +206,7 @@ void Mover::move(const coupling::Exchange& in) {
         "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
         parameters_.method == Method::barrier
             ? ""
-            : " 'method: barrier', to which 'auto' changes by itself, follows larger motions.");
+            : " 'method: barrier', to which 'auto' switches automatically, handles larger motions.");
 }
 
 coupling::Exchange Mover::solve(const coupling::Exchange& in) {

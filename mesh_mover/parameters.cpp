@@ -49,11 +49,11 @@ void declare_method(config::Section& s, Parameters& p) {
             {"barrier", Method::barrier},
             {"auto", Method::automatic}})
       .doc(
-          "laplacian: each component separately, cheapest. pseudo-solid: an elastic body, tolerates bending "
-          "and rotation. barrier: least distortion of the cells, which grows without "
-          "bound as a cell flattens: cannot fold, costs several linear solves per motion. auto: laplacian, or barrier if the "
-          "prescribed motions would invert a cell, or after the first motion that inverts one or folds it at a corner; "
-          "laplacian with periodic patches");
+          "laplacian: solves for each component separately and is the cheapest. pseudo-solid: an elastic body, which tolerates "
+          "bending and rotation. barrier: minimizes a distortion of the cells that grows without bound as a cell flattens, so "
+          "that cells cannot fold; costs several linear solves per motion. auto: laplacian, or barrier if the prescribed "
+          "motions would invert a cell, or after the first motion that inverts one or folds it at a corner; laplacian with "
+          "periodic patches");
   s.value("stiffening", p.stiffening)
       .range(0, 3)
       .doc("chi: the stiffness of a cell is its volume to the power -chi, so small cells deform less");

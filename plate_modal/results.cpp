@@ -45,8 +45,8 @@ void log_size(const Structure& structure) {
     std::ranges::sort(sorted, std::greater());
     slender = fmt::format(", thickness over its shorter span 1/{:.3g}", sorted[1] / h);
   }
-  log::info("the structure extends over {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(),
-            side.z(), model.mass, slender);
+  log::info("the structure measures {:.4g} x {:.4g} x {:.4g} m and has a mass of {:.4g} kg{}", side.x(),
+            side.y(), side.z(), model.mass, slender);
   if (structure.parameters().mesh) diagnostics::set_mesh_size(side, 3, structure.parameters().mesh_scale);
 }
 

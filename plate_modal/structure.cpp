@@ -38,7 +38,8 @@ void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState&
   if (!(std::abs(jump) > 1e-9 * scale)) return;
   if (tells)
     log::warn(
-        "energy: with the changes of this restart the structure holds {:.4g} J instead of {:.4g} J: this jump is not part of the balance.",
+        "energy: after the changes of this restart the structure has {:.4g} J instead of {:.4g} J; this jump is not part of "
+        "the balance.",
         now.total(), kept.total());
   kept.kinetic = now.kinetic, kept.strain = now.strain, kept.gravity = now.gravity,
   kept.contact = now.contact;
@@ -58,14 +59,13 @@ Structure::Structure(Parameters parameters, PlateContext context, const mesh::Ra
     if (!built_.note.empty()) log::warn("{}", built_.note);
     if (p.modes_file)
       log::info(
-          "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, "
-          "or along a stiff direction, needs many: export twice as many, and compare.");
+          "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, or along a stiff "
+          "direction, needs many modes: export twice as many, and compare.");
     if (built_.reused) log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
   }
   if (p.analysis == Parameters::Analysis::static_ && surface_.omega().front() == 0)
     throw Error(
-        "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports "
-        "that prevent this.");
+        "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports that prevent this.");
   gravity_.assign(surface_.n_modes(), 0);
   if (!p.gravity.empty()) gravity_ = surface_.participation(Vec3(p.gravity.data()));
   if (p.contact) make_contact();
@@ -88,9 +88,9 @@ void Structure::refuse_wound_springs() const {
   const Contact::DeepestPoint place = contact_->deepest(state_.q);
   if (place.depth <= 1e-9 * size) return;
   throw Error(
-      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
-      "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
-      "its mid-surface), or set 'starts-inside: true' if these springs are meant to push from the start.",
+      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower 'height' (it is "
+      "measured from the origin along the direction; a side of a plate is half a thickness from its mid-surface), or set "
+      "'starts-inside: true' if these springs are meant to push from the start.",
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
@@ -103,14 +103,16 @@ void Structure::make_contact() {
   if (parallel::comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
-      "contact over all faces lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
+      "contact over all faces lasts {:.3g} s (pi sqrt(m / kappa)), and contact over some of them lasts longer",
+      shortest);
   if (std::isnan(steps))
     log::info("{}.", text);
   else if (steps >= 10)
     log::info("{}. The time step resolves it with {:.3g} steps.", text, steps);
   else
     log::warn(
-        "{}. The time step resolves it with only {:.2g} steps. Twenty give the rebound speed to 1 %: 'simulation.time-step: {:.2g} s'.",
+        "{}. The time step resolves it with only {:.2g} steps. Twenty steps give the rebound speed to 1 %: "
+        "'simulation.time-step: {:.2g} s'.",
         text, steps, shortest / 20);
 }
 
@@ -238,7 +240,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
   }
   if (parallel::comm_rank(context_.comm) == 0)
-    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
+    log::info("static deflection: max {:.6e} m; with {} modes {:.6e} m; max difference {:.2e} m", d.direct,
               surface_.n_modes(), d.by_modes, d.apart);
 }
 
@@ -274,7 +276,7 @@ void Structure::load(io::CheckpointReader& file) {
   for (const auto part :
        {&ModalState::q, &ModalState::v, &ModalState::a, &ModalState::q_old, &ModalState::v_old})
     if ((state_.*part).size() != (fresh.*part).size())
-      throw Error("The checkpoint was written with another time scheme than this run uses.");
+      throw Error("The checkpoint was written with a time scheme that differs from that of this run.");
   take_changed_energy(*oscillators_, parallel::comm_rank(context_.comm) == 0, state_);
   trial_ = state_;
   displacement_ = surface_.motion(state_.q);
@@ -285,8 +287,8 @@ void Structure::visit(io::Archive archive) {
   archive.common("omega", omega);
   if (omega != surface_.omega())
     throw Error(
-        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
-        "supports or the number of modes differ.");
+        "The checkpoint was written with modes that differ from those of this run: mesh, material, thickness, supports or the "
+        "number of modes differ.");
   archive.common("state", state_);
 }
 

@@ -84,7 +84,8 @@ diagnostics::EffectChoice inertia(const SolidParameters& p, const mesh::MeshFact
   const double period = lowest_period(p, mesh);
   return choose(
       change < slow * period,
-      fmt::format("the loads change within {:.3g} s, the lowest period is about {:.3g} s", change, period));
+      fmt::format("the loads change within {:.3g} s, and the longest natural period is about {:.3g} s",
+                  change, period));
 }
 
 }  // namespace
@@ -93,7 +94,8 @@ std::vector<diagnostics::EffectChoice> choose_effects(const SolidParameters& p, 
                                                       const diagnostics::CaseScene& scene) {
   std::vector<diagnostics::EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
-       mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};
+       mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has three-dimensional cells",
+       false}};
   if (p.analysis != SolidParameters::Analysis::thermal) choices.push_back(inertia(p, mesh, scene));
   return choices;
 }

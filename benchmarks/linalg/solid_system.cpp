@@ -145,8 +145,8 @@ Result by_cycle(const System& system, const SolidBody& body, const std::string& 
   int aggregates = 0;
   {
     const std::string name = make_solution_method(problem, body.parameters().method)->name();
-    const auto at = name.find("rigid motions of ");
-    if (at != std::string::npos) aggregates = std::atoi(name.c_str() + at + 17);
+    const auto at = name.find("rigid-body modes of ");
+    if (at != std::string::npos) aggregates = std::atoi(name.c_str() + at + 20);
   }
   const double choosing = whole.seconds();
   petsc_check(PetscOptionsInsertString(nullptr, options.c_str()));

@@ -49,12 +49,12 @@ class Reader {
 
   Configuration read() {
     if (name(root_) != "precice-configuration")
-      xml_.refuse(root_, "<precice-configuration> of preCICE's version 3 is expected, this is <" +
-                             name(root_) + ">.");
+      xml_.refuse(root_,
+                  "expected <precice-configuration> of preCICE version 3, but found <" + name(root_) + ">.");
     if (is_true(value(root_, "allow-remeshing")))
       xml_.refuse(
           root_,
-          "<precice-configuration> with allow-remeshing is not supported: meshes that change during the run.");
+          "<precice-configuration> with allow-remeshing (meshes that change during the run) is not supported.");
     const Element me = participant(c_.participant);
     for (const Element child : root_.children())
       if (begins(name(child), "data:")) {
@@ -95,19 +95,19 @@ class Reader {
   void check_supported(const Element& me) const {
     for (const Element child : me.children()) {
       const std::string named = "<" + name(child) + ">";
-      if (begins(name(child), "action:")) xml_.refuse(child, named + " is not supported: actions on data.");
+      if (begins(name(child), "action:")) xml_.refuse(child, named + " (actions on data) is not supported.");
       if (name(child) == "use-mesh")
-        xml_.refuse(child, named + " is of preCICE's version 2; this library reads version 3.");
+        xml_.refuse(child, named + " belongs to preCICE version 2, but this library reads version 3.");
       if (name(child) == "receive-mesh" &&
           (is_true(value(child, "api-access")) || is_true(value(child, "direct-access"))))
-        xml_.refuse(child, named + " with api-access is not supported: direct access to received meshes.");
+        xml_.refuse(child, named + " with api-access (direct access to received meshes) is not supported.");
       if (!begins(name(child), "mapping:")) continue;
       if (value(child, "from").empty() || value(child, "to").empty())
-        xml_.refuse(child, named + " without from or to is not supported: just-in-time mapping.");
+        xml_.refuse(child, named + " without from or to (just-in-time mapping) is not supported.");
       if (name(child).find("gradient") != std::string::npos)
-        xml_.refuse(child, named + " is not supported: mapping with gradients.");
+        xml_.refuse(child, named + " (mapping with gradients) is not supported.");
       if (name(child).find("multiscale") != std::string::npos)
-        xml_.refuse(child, named + " is not supported: mapping between dimensions.");
+        xml_.refuse(child, named + " (mapping between dimensions) is not supported.");
       if (begins(value(child, "constraint"), "scaled"))
         xml_.refuse(child,
                     named + " with constraint \"" + value(child, "constraint") + "\" is not supported.");
@@ -276,7 +276,7 @@ static std::string configuration_of_case(const std::string& file) {
     if (begins(line, mark))
       return (std::filesystem::path(file).parent_path() / line.substr(mark.size())).string();
   throw ::precice::Error(file +
-                         ": this case does not name the configuration of preCICE from which it was made (\"" +
+                         ": this case does not name the preCICE configuration from which it was made (\"" +
                          mark + "...\", as couplet import writes it).");
 }
 

@@ -63,7 +63,7 @@ void Participant::advance(double dt) {
   if (dt > s.remaining() + 1e-12 * s.window)
     fail(s, "The time step size given to advance(), " + text(dt) +
                 ", exceeds the maximum allowed time step size " + text(s.remaining()) +
-                " in the remaining of this time window. Call getMaxTimeStepSize() before each step.");
+                " in the remainder of this time window. Call getMaxTimeStepSize() before each step.");
   check(
       s, !s.writing_due,
       "A checkpoint must be written before advance(): requiresWritingCheckpoint() was not called, which implicit "

@@ -15,7 +15,7 @@ void elements(Session& s, string_view name, const char* call, span<const VertexI
   Mesh& mesh = open_mesh(s, name, call);
   if (ids.size() % n != 0)
     fail(s, std::string(call) + " was given " + std::to_string(ids.size()) +
-                " vertex ids, which is no multiple of " + std::to_string(n) + ".");
+                " vertex ids, which is not a multiple of " + std::to_string(n) + ".");
   for (std::size_t i = 0; i < ids.size(); i += n) {
     const span<const VertexID> one(ids.data() + i, n);
     check_corners(s, call, mesh, one);

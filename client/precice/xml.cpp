@@ -23,7 +23,7 @@ XmlFile::XmlFile(std::string file) : file_(std::move(file)) {
   if (!read) refuse_at(read.offset, std::string(read.description()) + ".");
   // A document type may define entities, whose text would be missing.
   for (const pugi::xml_node node : document_.children())
-    if (node.type() == pugi::node_doctype) refuse(node, "document types are not read.");
+    if (node.type() == pugi::node_doctype) refuse(node, "document types are not supported.");
 }
 
 void XmlFile::refuse(pugi::xml_node element, const std::string& why) const {

@@ -286,7 +286,7 @@ void Loader::below(const Declaration& d) {
       // Names of the mesh are not the user's to choose.
       if (d.what != "patch" && d.what != "zone" && name.find_first_of(",\"") != std::string::npos)
         report(place_of(item.first), join_path(path, name),
-               "a name is that of columns in tables; it must not contain a comma or a double quote.");
+               "this name is used for columns in tables, so it must not contain a comma or a double quote.");
       read(item.second, place_of(item.first), join_path(path, name), name, 0);
     }
     return;

@@ -15,7 +15,8 @@ constexpr std::string_view fluid = "fluid_solver", solid = "solid_solver", plate
 
 constexpr std::string_view
     no_plasticity = "no plasticity, creep or viscoelasticity",
-    use_calculix = "give every metal its yield-strength; use CalculiX beyond it",
+    use_calculix =
+        "give 'yield-strength' for every metal, so that yielding is reported; beyond it use CalculiX",
     inelastic =
         "plastic plasticity elastoplastic elasto-plastic elastic-plastic viscoplastic yield-stress "
         "hardening yield-curve johnson-cook von-mises drucker-prager mohr-coulomb creep norton "
@@ -43,8 +44,8 @@ constexpr MissingPhysics table[] = {
     {fluid,
      "temperature thermal heat heat-flux heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh "
      "buoyancy boussinesq expansion conjugate-heat-transfer cht energy-equation natural-convection",
-     "no temperature in the fluid, so no buoyancy and no conjugate heat transfer within Couplet's own fluid",
-     "couple an external program that solves the heat, as in warm-flap"},
+     "no temperature in the fluid, so no buoyancy and no conjugate heat transfer within Couplet's own fluid solver",
+     "couple an external program that solves the heat equation, as the case warm-flap does"},
     {fluid,
      "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
      "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "
@@ -57,41 +58,40 @@ constexpr MissingPhysics table[] = {
     {fluid, "axisymmetric axisymmetry axi-symmetric axial-symmetry swirl wedge", "no axisymmetric flow",
      "compute a wedge or the full domain in three dimensions"},
     {fluid, "steady steady-state stationary pseudo-transient pseudo-time simple simplec",
-     "no steady solver: every flow is computed in time",
+     "no steady-state solver: every flow is computed as a transient",
      "start from rest with a constant inflow and run until drag, lift or probes no longer change"},
     {fluid,
      "porous porosity permeability darcy forchheimer brinkman porous-zone porous-jump momentum-source actuator fan",
-     "no porous media, no fans and no sources of momentum in a part of the fluid",
+     "no porous media, no fans and no local momentum sources in the fluid",
      "mesh the passages, or use another fluid solver"},
     {fluid,
      "resistance windkessel rcr lumped impedance compliance capacitance flow-resistance loss-coefficient pressure-drop",
      "no outlets with a resistance, a loss coefficient or a windkessel",
-     "give the pressure of the outlet as a function or table of time, or mesh a narrow outlet that has the resistance"},
+     "give the outlet pressure as a function or table of time, or mesh a narrow outlet that provides the resistance"},
     {solid, inelastic, no_plasticity, use_calculix},
     {plate, inelastic, no_plasticity, use_calculix},
     {solid, "fracture damage crack cohesive delamination debonding failure fatigue phase-field xfem erosion",
      "no fracture, damage or delamination", "check the largest stress against the strength"},
     {solid, "contact self-contact contact-pair contact-pairs friction frictional",
-     "no contact between deformable bodies and no self-contact; a plate or solid may meet one rigid seat without "
-     "friction",
+     "no contact between deformable bodies and no self-contact; a plate or solid may touch one rigid seat without friction",
      "check the gap between the bodies; use CalculiX or solids4foam"},
     {solid, "beam beams shell shells membrane truss cable rod",
-     "no beam, shell or membrane elements; thin plates are linear and given by modes",
+     "no beam, shell or membrane elements; thin plates are linear and represented by modes",
      "use solid_solver with a few cells across the thickness"},
     {solid,
      "porous poroelastic poroelasticity biot permeability pore-pressure consolidation piezoelectric magnetic electric "
      "swelling moisture radiation emissivity phase-change latent-heat melting",
-     "no pore pressure, no electric or magnetic fields, no radiation and no change of phase in solids",
+     "no pore pressure, no electric or magnetic fields, no radiation and no phase change in solids",
      "use another solver, or couple a program of your own"},
     {solid,
      "harmonic frequency-response steady-state-dynamics random-vibration response-spectrum psd complex-modes",
      "no response in the frequency domain",
-     "compute the motion in time with output.spectrum, or combine the modes of analysis: modal yourself"},
+     "compute a transient with output.spectrum, or combine the modes of 'analysis: modal' yourself"},
     {mover, "remesh remeshing adaptive refinement topology overset chimera sliding-interface ami",
-     "meshes move but are not remade; topology stays the same",
+     "meshes move, but are not regenerated, and their topology stays the same",
      "use gaps for valves that close, or bodies for parts that pass each other (immersed-seat)"},
     {fluid, "overset chimera sliding-interface sliding-mesh ami remesh remeshing adaptive amr refinement",
-     "meshes move but are not remade; topology stays the same",
+     "meshes move, but are not regenerated, and their topology stays the same",
      "use gaps for valves that close, or bodies for parts that pass each other (immersed-seat)"},
 };
 
@@ -102,28 +102,29 @@ struct Removed {
 
 constexpr Removed removed[] = {
     {coupling, "error-estimate", "set 'diagnostics: without-errors' for 'error-estimate: false'"},
-    {coupling, "neglected-share", "set 'neglected-limit', its new name"},
-    {coupling, "both min-iterations", "leave it out: a step has converged when either limit is met"},
-    {coupling, "maximum-columns", "leave it out, or set 'reused-steps'"},
-    {coupling, "waveform", "leave it out: sub-steps take input that is linear in time"},
-    {coupling, "on-divergence", "leave it out, or set 'simulation: {accept: [interface-oscillation]}'"},
-    {coupling, "interface-output", "look at the fields of the programs, or integrate with 'coupling.watch'"},
-    {coupling, "part", "leave it out: forces.csv of the fluid has the forces of each patch"},
+    {coupling, "neglected-share", "set 'neglected-limit', the new name of this key"},
+    {coupling, "both min-iterations", "remove it: a step has converged when either limit is met"},
+    {coupling, "maximum-columns", "remove it, or set 'reused-steps'"},
+    {coupling, "waveform", "remove it: the input of sub-steps is interpolated linearly in time"},
+    {coupling, "on-divergence", "remove it, or set 'simulation: {accept: [interface-oscillation]}'"},
+    {coupling, "interface-output",
+     "use the field output of the programs, or integrate data with 'coupling.watch'"},
+    {coupling, "part", "remove it: forces.csv of the fluid lists the forces on each patch"},
     {coupling, "rbf", "set 'type: projection'"},
-    {fluid, "scheme runge-kutta", "leave it out, and take a third of the step"},
+    {fluid, "scheme runge-kutta", "remove it, and use a third of the time step"},
     {fluid, "upstream-line", "mesh the tube, or set 'upstream-volume'"},
     {fluid, "substance heat-capacity-ratio", "set 'speed-of-sound'"},
     {solid, "corrected", "set 'face-gradient: symmetric', the default"},
-    {solid, "deformed", "displace the fields where you look at them"},
+    {solid, "deformed", "displace the mesh in the program that displays the fields"},
     {solid, "principal-stress", "read it at probes, or compute it from 'stress'"},
-    {solid, "moment-centre", "subtract the center times the force"},
-    {solid, "stiffness-tolerance linear-tolerance longest", "leave it out"},
+    {solid, "moment-centre", "subtract the cross product of the center and the force"},
+    {solid, "stiffness-tolerance linear-tolerance longest", "remove it"},
     {tank, "coldest warmest", "set their mean, 'temperature'"},
     {tank,
      "wall-film wall-coefficient emissivity-liquid emissivity-roof emissivity-wall cover-emissivity roof-pressure "
      "deep-temperature outlet-margin dead-state solar-absorptance site longitude time-zone shift days humidity lowest "
      "highest capsules",
-     "leave it out"},
+     "remove it"},
 };
 
 }  // namespace
@@ -134,7 +135,8 @@ std::string limit_named_by(std::string_view key_or_value, std::string_view progr
   for (const Removed& row : removed)
     if (row.program == program)
       for (const std::string& word : base::split(row.words, ' '))
-        if (word == key_or_value) return fmt::format("It is gone (CHANGELOG.md). Instead: {}.", row.instead);
+        if (word == key_or_value)
+          return fmt::format("This key or value was removed (CHANGELOG.md). Instead: {}.", row.instead);
   std::string text = "-";
   for (const char c : key_or_value)
     text += c == '_' || c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

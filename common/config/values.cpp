@@ -91,9 +91,7 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
   std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node));
   if (node["file"]) {
     if (node["at"] || node["values"])
-      throw Error(
-          "a table takes either 'file' or 'at' and 'values', not "
-          "both.");
+      throw Error("a table takes either 'file' or 'at' and 'values', not both.");
     text += fmt::format(", \"{}\"", (folder / word(node, "file")).string());
     if (node["column"]) text += fmt::format(", \"{}\"", word(node, "column"));
     return text + ")";
@@ -222,7 +220,8 @@ std::string list_of(const Facts& facts, const std::string& things) {
 std::string read_text(const YAML::Node& node) {
   const std::string& text = scalar(node, "a text");
   if (text.find_first_of("\n\t") != text.npos)
-    throw Error("expected a text in one line, without tabs. It may become part of a file name or a script.");
+    throw Error(
+        "expected a single line of text without tabs. It may become part of a file name or a script.");
   return text;
 }
 
@@ -307,8 +306,9 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot,
 
 std::string unknown_key(std::string_view name, const std::vector<std::string>& known) {
   if (name == "quantities")
-    return "unknown key. Quantities of this program (a force, a value at a probe, an extreme) belong to the section 'study: {quantities: ...}' of the "
-           "case; 'couplet study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md).";
+    return "unknown key. Quantities of this program (a force, a value at a probe, an extremum) belong to the section 'study: "
+           "{quantities: ...}' of the case; 'couplet study CASE --quantities' estimates their errors from differences between "
+           "coarser runs (docs/studies.md).";
   return "unknown key. " + base::did_you_mean(name, known, "keys");
 }
 
@@ -396,8 +396,8 @@ std::string check_kinematic_viscosity(double viscosity, double density) {
   constexpr double least = 5e-8;  // [m^2/s]
   if (!(viscosity > 0) || !(density > 0) || viscosity / density >= least) return "";
   return fmt::format(
-      "viscosity/density is {:.3g} m^2/s (usual: at least {:g} m^2/s): implausible; 'viscosity' is the dynamic one, in Pa s: the "
-      "kinematic one times the density would be {:g} Pa s.",
+      "viscosity/density is {:.3g} m^2/s (usual: at least {:g} m^2/s): implausible; 'viscosity' is the dynamic viscosity, in "
+      "Pa s: if the kinematic one was meant, it times the density is {:g} Pa s.",
       viscosity / density, least, viscosity * density);
 }
 

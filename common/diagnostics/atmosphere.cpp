@@ -49,12 +49,12 @@ std::optional<Finding> atmosphere_on_one_side(MPI_Comm comm, int dim, std::span<
       .number = pressure,
       .limit = atmosphere,
       .sentence = fmt::format(
-          "load of the interface: a uniform pressure of {:.5g} Pa, about that of the atmosphere, and none on the "
-          "other side of the structure: questionable",
+          "load of the interface: a uniform pressure of {:.5g} Pa, about atmospheric pressure, acts on only one side of the "
+          "structure: questionable",
           pressure),
       .advice =
-          "if the fluid's pressures include the atmosphere, subtract it ('pressure: 0' at its outlets), or give the other "
-          "side of the structure this pressure, too"};
+          "if the fluid's pressures are absolute, subtract atmospheric pressure ('pressure: 0' at the outlets), or apply this "
+          "pressure to the other side of the structure as well"};
 }
 
 }  // namespace couplet::diagnostics

@@ -202,10 +202,10 @@ std::string error_summary(const std::vector<NamedErrors>& participants) {
 
 std::string best_change(const std::vector<NamedErrors>& participants) {
   const auto worst = worst_part(participants);
-  if (misses_step(participants)) return "compare with a run at half the time step, which shows its error";
+  if (misses_step(participants)) return "repeat the run with half the time step to see the error it causes";
   // Else the known part is large enough to begin with.
   if (std::ranges::any_of(participants, misses_mesh) && !(total_error(participants) >= questionable_error))
-    return "compare with a run at half the cell size, which shows its error";
+    return "repeat the run with half the cell size to see the error it causes";
   return worst ? cure(*worst) : "";
 }
 

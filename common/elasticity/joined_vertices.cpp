@@ -87,9 +87,8 @@ void JoinedVertices::refuse_unlike() const {
   if (unlike.empty()) return;
   const Vec3& x = unlike.front();
   throw Error(
-      "The two sides of the periodic patches are supported differently: the adjacent patches at ({:.4g}, "
-      "{:.4g}, {:.4g}) hold the point in other directions than those at its copy. Give both ends the same "
-      "type.",
+      "The two sides of the periodic patches are supported differently: the adjacent patches at ({:.4g}, {:.4g}, {:.4g}) hold "
+      "the point in directions other than those held at its periodic copy. Give both ends the same type.",
       x.x(), x.y(), x.z());
 }
 

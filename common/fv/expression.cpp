@@ -47,7 +47,7 @@ void refuse_other_meanings(const std::string& text) {
     } else if (text[i] == ')' && levels.size() > 1) {
       levels.pop_back();
     } else if (text[i] == ',' && !levels.back().takes_commas) {
-      throw TextProblem{i, "a comma separates the arguments of a function only; write a decimal point"};
+      throw TextProblem{i, "a comma only separates the arguments of a function; write a decimal point"};
     } else if (is(i, ",?:") || (is(i, "&|") && is(i + 1, "&|"))) {
       levels.back().compares = false;
     } else if (is(i, "<>=!")) {
@@ -55,9 +55,9 @@ void refuse_other_meanings(const std::string& text) {
       if (text[i] == '=' && !two)
         throw TextProblem{
             i,
-            "'=' does not compare, and nothing can be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
+            "'=' is not a comparison, and values cannot be assigned; write '==', or a range such as abs(y - 0.1) < 1e-6"};
       if (std::exchange(levels.back().compares, true))
-        throw TextProblem{i, "comparisons in a row; join them by '&&', as in '0 < x && x < 1'"};
+        throw TextProblem{i, "comparisons cannot be chained; join them by '&&', as in '0 < x && x < 1'"};
       i += two;
     }
   }
@@ -177,9 +177,8 @@ struct Expression::ParserState {
 
   [[noreturn]] void fail(std::size_t column, const std::string& what) const {
     throw Error(
-        "{}cannot parse the expression '{}' at column {}: {}. Known are the variables x, y, z [m] and t "
-        "[s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, "
-        "sqrt, abs, min, max.",
+        "{}cannot parse the expression '{}' at column {}: {}. An expression may contain the variables x, y, z [m] and t [s], "
+        "the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.",
         where.empty() ? "" : where + ": ", text, column, what);
   }
 

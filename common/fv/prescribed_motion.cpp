@@ -24,8 +24,10 @@ std::vector<Expression> expressions(const std::vector<config::ExpressionText>& t
 void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("translation", m.translation)
       .unit("m", 1e-9, 1e4)
-      .doc("one expression of t [s] per component; default: none");
-  s.value("angle", m.angle).unit("rad", 1e-9, 1e4).doc("angle about 'centre', expression of t [s] in rad");
+      .doc("translation, one expression of t [s] per component; default: none");
+  s.value("angle", m.angle)
+      .unit("rad", 1e-9, 1e4)
+      .doc("rotation angle about 'centre' [rad], an expression of t [s]");
   s.value("centre", m.centre)
       .unit("m", 1e-9, 1e4)
       .doc("center of the rotation and of the radii, in the reference configuration");
@@ -44,8 +46,8 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
         .unit("m", 1e-9, 1e4)
         .positive()
         .doc(
-            "beyond it the mesh is at rest; between the radii the motion decays smoothly; default: the "
-            "whole mesh moves");
+            "beyond this distance the mesh is at rest, and between the radii the motion decays smoothly; default: the whole "
+            "mesh moves");
   }
   s.check(
       [&m] {
@@ -68,8 +70,7 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
 void check_axis(const Vec3& axis, int dim, const std::string& key) {
   if (dim == 2 && (axis[0] != 0 || axis[1] != 0 || !(axis[2] > 0)))
     throw Error(
-        "{}: a 2-D case rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or "
-        "speed.",
+        "{}: a 2-D case rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or speed.",
         key);
 }
 

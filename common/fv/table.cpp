@@ -38,7 +38,7 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
   if (found != names.end()) {
     if (found == names.begin())
       throw Error(
-          "{}: '{}' is the first column, which holds the table's points; the values must be in another one.",
+          "{}: '{}' is the first column, which contains the table's points; the values must be in another one.",
           file.string(), column);
     if (std::find_if(found + 1, names.end(), is_called) != names.end())
       throw Error("{}: more than one column is called '{}'. Give its number.", file.string(), column);

@@ -33,8 +33,7 @@ std::vector<std::int64_t> layout_of_array(const hdf5::Reader& in, const std::str
   for (std::size_t r = 0; r < n; ++r) {
     if (layout[r] < 0 || std::uint64_t(layout[r]) > left)
       in.refuse(
-          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
-                      "remaining",
+          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} remaining",
                       name, total, r, layout[r], left));
     left -= std::uint64_t(layout[r]);
   }
@@ -72,8 +71,7 @@ void examine_stamp(const hdf5::Reader& in) {
   const auto set = read_checkpoint_set(folder_of(in.file()));
   if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
   throw Error(
-      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s "
-      "of run {}).",
+      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s of run {}).",
       in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
 }
 
@@ -143,7 +141,7 @@ struct CheckpointReader::ReaderState {
     const int size = parallel::comm_size(comm);
     if (ranks != size && in.has(array_path(name)))
       throw Error(
-          "The checkpoint '{}' was written on {} {}, this run has {}: its array '{}' is each rank's own. "
+          "The checkpoint '{}' was written on {} {}, but this run has {}, and its array '{}' belongs to individual ranks. "
           "Restart on the same number of ranks.",
           in.file().string(), ranks, ranks == 1 ? "rank" : "ranks", size, name);
     return array_of(name, parallel::comm_rank(comm));
@@ -218,14 +216,15 @@ void CheckpointReader::on(const mesh::Mesh& mesh) {
   const bool same = parallel::on_all(state_->comm, [&] {
     const hdf5::Reader& in = state_->in;
     auto then = now;
-    if (!in.has(mesh_table)) in.refuse("it holds no mesh: it was written by another program or another case");
+    if (!in.has(mesh_table))
+      in.refuse("it contains no mesh: it was written by another program or another case");
     in.read(mesh_table, {0, 1, 1, then.size()}, then.data());
     if (then != now)
       throw Error(
-          "The checkpoint '{}' is from another mesh, of {} cells, {} points and {} boundary faces; this one "
-          "has {}, {} and {}{}. Another version of gmsh may number them otherwise; give the same mesh file.",
+          "The checkpoint '{}' is from another mesh, of {} cells, {} points and {} boundary faces; this one has {}, {} and "
+          "{}{}. Another version of gmsh may number them differently; give the same mesh file.",
           in.file().string(), then[0], then[1], then[2], now[0], now[1], now[2],
-          std::equal(then.begin(), then.begin() + 3, now.begin()) ? ", in another order" : "");
+          std::equal(then.begin(), then.begin() + 3, now.begin()) ? ", in a different order" : "");
     if (!state_->same_share) return false;
     std::int64_t before = 0;
     in.read(shares_table,

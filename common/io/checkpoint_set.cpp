@@ -256,8 +256,8 @@ void warn_if_lost(const fs::path& output, double restart_time) {
   if (fs::exists(output)) return;
   for (const FoundSet& set : checkpoint_sets(output.parent_path().parent_path() / "checkpoints"))
     if (set.stamp.time == restart_time) {
-      log::warn("'{}' was not there: it begins at t = {:g} s, where the run continues.", output.string(),
-                restart_time);
+      log::warn("'{}' did not exist at the restart: it begins at t = {:g} s, where the run continues.",
+                output.string(), restart_time);
       return;
     }
 }

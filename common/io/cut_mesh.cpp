@@ -122,7 +122,7 @@ std::uint64_t whole_number(const hdf5::Reader& in, const char* name, double most
 hdf5::Reader open_cut_mesh(const std::filesystem::path& file) {
   hdf5::Reader in(file, cut_mesh, advice_on_cut);
   if (!in.has_attribute("/", cut::version_name))
-    in.refuse("it is an HDF5 file, but no cut mesh (it has no 'cut-mesh-version')");
+    in.refuse("it is an HDF5 file, but not a cut mesh (it has no 'cut-mesh-version')");
   const double version = in.number("/", cut::version_name);
   if (version != cut::version)
     in.refuse(fmt::format("it is of version {}; this program reads version {}", version, cut::version));
@@ -200,7 +200,7 @@ class CutMeshBlock {
       cells.type.push_back(mesh::CellType(type));
       cells.zone.push_back(static_cast<int>(zone));
       if (starts[c + 1] - starts[c] != mesh::shape_of(cells.type.back()).n_points)
-        in_.refuse(fmt::format("cell {} has not as many points as a {}", first + c,
+        in_.refuse(fmt::format("cell {} does not have as many points as a {}", first + c,
                                mesh::name_of(cells.type.back())));
       cells.point_offset.push_back(cells.point_offset.back() + mesh::shape_of(cells.type.back()).n_points);
     }
@@ -231,7 +231,7 @@ class CutMeshBlock {
 
   void check_point(GlobalIndex p, const char* of) const {
     if (p < 0 || p >= block_.point_shares.n)
-      in_.refuse(fmt::format("{} has the point {}, but there are {}", of, p, block_.point_shares.n));
+      in_.refuse(fmt::format("{} refers to point {}, but there are {}", of, p, block_.point_shares.n));
   }
 
   hdf5::Reader in_;

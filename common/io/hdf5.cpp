@@ -89,7 +89,7 @@ void write_any(hid_t place, const std::string& path, const RowSpan& rows, hid_t 
   const Handle space = file_space(rows);
   const Handle layout = layout_of(rows);
   Handle table = checked(H5Dcreate2(place, path.c_str(), type, space, links, layout, H5P_DEFAULT), H5Dclose,
-                         "make the table", path);
+                         "create the table", path);
   if (rows.total == 0) return;
   select(space, rows);
   const Handle memory = memory_space(rows);
@@ -158,8 +158,8 @@ Handle make_group(hid_t place, const std::string& path) {
   const Quiet quiet;
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  return checked(H5Gcreate2(place, path.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make the group",
-                 path);
+  return checked(H5Gcreate2(place, path.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                 "create the group", path);
 }
 
 RowSpan distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width) {
@@ -181,7 +181,7 @@ void write_attribute(hid_t object, const std::string& name, double value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute =
       checked(H5Acreate2(object, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-              "make the attribute", name);
+              "create the attribute", name);
   check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value), "write the attribute", name);
 }
 
@@ -191,7 +191,7 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, std::max<std::size_t>(text.size(), 1));
   const Handle attribute = checked(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
-                                   H5Aclose, "make the attribute", name);
+                                   H5Aclose, "create the attribute", name);
   check(H5Awrite(attribute, type, text.c_str()), "write the attribute", name);
 }
 

@@ -41,7 +41,7 @@ std::unique_ptr<csv::LineReader> rows_of(const std::filesystem::path& file, cons
   if (!old->next(line)) return nullptr;
   if (line != head)
     throw Error(
-        "Cannot continue the series '{}': its columns are '{}', those of this run are '{}'. Move the file away.",
+        "Cannot continue the series '{}': its columns are '{}', but those of this run are '{}'. Move the file away.",
         file.string(), line, head);
   return old;
 }

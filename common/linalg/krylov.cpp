@@ -198,7 +198,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
 
 /// Counts two applications as one iteration, as in BiCGStab.
 int KrylovSolver::run_gmres(std::span<double> x, double wanted, int most, bool continues) {
-  if (!is_announced_ && continues) log::info("{}: BiCGStab was not enough; GMRES continues", what_);
+  if (!is_announced_ && continues) log::info("{}: BiCGStab did not converge; continuing with GMRES", what_);
   is_announced_ = true;
   if (!gmres_) gmres_ = std::make_unique<PetscGmres>(comm_, n_, apply_, precondition_);
   return (gmres_->run(r_, x, wanted, 2 * most) + 1) / 2;

@@ -65,7 +65,7 @@ void SymmetricFactors::factorise(Mat a) {
   petsc_check(MatFactorGetError(factors_, &error));
   if (error != MAT_FACTOR_NOERROR)
     throw SolveFailure(
-        "MUMPS could not factorise a symmetric matrix (PETSc's MatFactorError {}): is there enough memory?",
+        "MUMPS could not factorize a symmetric matrix (PETSc's MatFactorError {}): is there enough memory?",
         int(error));
   PetscInt negative = 0, zero = 0, positive = 0;
   petsc_check(MatGetInertia(factors_, &negative, &zero, &positive));
@@ -99,7 +99,7 @@ void SymmetricFactors::solve(std::span<const double> b, std::span<double> x) con
   double square = 0;
   for (const double v : x) square += v * v;
   if (!std::isfinite(parallel::sum(PetscObjectComm(reinterpret_cast<PetscObject>(b_)), square)))
-    throw SolveFailure("The factorised solve of a symmetric system gave no finite solution.");
+    throw SolveFailure("The solution of a symmetric system with its factors is not finite.");
 }
 
 }  // namespace couplet::linalg

@@ -94,8 +94,8 @@ std::string impossible_in(const ModalModel& model) {
   for (std::size_t m = 0; m < n && model.frequency[m] == 0; ++m)
     if (const double misfit = rigid_motion(model, m).misfit; misfit > 0.02)
       return fmt::format(
-          "mode {} has 0 Hz, but its shape is not a rigid motion: {:.2g} of it (rms) is deformation. The "
-          "rows of the shapes are per vertex, with three components each",
+          "mode {} has a frequency of 0 Hz, but its shape is not a rigid-body motion: a fraction {:.2g} of it (rms) is "
+          "deformation. Check the array layout: one row per vertex, with three components",
           m + 1, misfit);
   if (const int m = mode_of_two_shapes(model); m >= 0)
     return fmt::format(
@@ -137,8 +137,9 @@ std::string overlap_problem_of(const ModalModel& model) {
     for (std::size_t j = 0; j < i; ++j)
       if (const double both = product[i * n + i] * product[j * n + j];
           product[i * n + j] * product[i * n + j] > 0.25 * both)
-        return fmt::format("modes {} and {} are not orthogonal: {:.2g} of one is the other", j + 1, i + 1,
-                           std::abs(product[i * n + j]) / std::sqrt(both));
+        return fmt::format(
+            "modes {} and {} are not orthogonal: the cosine of the angle between them is {:.2g}", j + 1,
+            i + 1, std::abs(product[i * n + j]) / std::sqrt(both));
   return "";
 }
 
@@ -151,8 +152,8 @@ std::string scale_problem_of(const ModalModel& model) {
     largest = std::max(largest, sums[m].modal_mass);
     if (sums[m].modal_mass > most)
       return fmt::format(
-          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 "
-          "kg",
+          "mode {} is not mass-normalized: the surface alone has a modal mass of {:.3g} kg, but that of the whole structure "
+          "must be 1 kg",
           m + 1, sums[m].modal_mass);
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
     for (int c = 0; c < 3; ++c) {
@@ -173,7 +174,8 @@ std::string scale_problem_of(const ModalModel& model) {
       model.face_density.empty() ? 1e-4 : (sums.front().mass < 0.5 * model.mass ? 1e-4 : 0.1);
   if (largest < least)
     return fmt::format(
-        "no mode is mass-normalized: the surface has modal masses up to {:.2g}; that of the structure must be 1 kg",
+        "no mode is mass-normalized: the surface has modal masses of up to {:.2g} kg, but that of the whole structure must be "
+        "1 kg",
         largest);
   return "";
 }
@@ -204,7 +206,8 @@ std::string problem_of(const ModalModel& model) {
       return fmt::format("face {} has {} vertices; 3 or 4 are needed", f + 1, corners.size());
     for (const Index v : corners)
       if (v < 0 || std::size_t(v) >= vertices)
-        return fmt::format("face {} refers to vertex {}; there are {}", f + 1, v, vertices);
+        return fmt::format("face {} refers to vertex {}, but the number of vertices is {}", f + 1, v,
+                           vertices);
   }
   if (std::string wrong = surface_problem_of(model); !wrong.empty()) return wrong;
   const auto finite = [](double value) { return std::isfinite(value); };
@@ -225,9 +228,8 @@ std::string order_problem_of(const ModalModel& model) {
       roughness(model, lowest, [n](std::size_t v, std::size_t c) { return c * n + v; });
   if (by_component >= 0.5 * by_vertex) return "";
   return fmt::format(
-      "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, "
-      "neighboring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
-      "three components each",
+      "the shape of mode {} seems to list all x components first, then all y, then all z: in this order, the mean square "
+      "difference of neighboring vertices is {:.2g} times smaller. There must be one row per vertex, with three components",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
 }
 

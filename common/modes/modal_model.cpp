@@ -216,8 +216,9 @@ ModalModel read_modes(const std::filesystem::path& file) {
 std::string missing_by_symmetry(const std::vector<std::string>& patches, const char* instead) {
   if (patches.empty()) return "";
   return fmt::format(
-      "symmetry ('{}'): only shapes that are symmetric about it were sought; those of the other symmetry are missing. Repeat the run "
-      "with {} there, on one plane at a time and on all of them (a patch that holds two planes must be split).",
+      "symmetry ('{}'): only mode shapes that are symmetric about this plane were computed; the antisymmetric ones are "
+      "missing. Repeat the run with {} there, on one plane at a time and on all of them (a patch that covers two planes must "
+      "be split).",
       base::join(patches, "', '"), instead);
 }
 

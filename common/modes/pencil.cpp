@@ -182,9 +182,8 @@ EigenModes counted_modes(const Pencil& pencil, int n, double shift,
     return modes;
   }
   throw SolveFailure(
-      "Cannot verify the {} lowest modes: the eigenvalue solver returned fewer, or not those that the pivot "
-      "count predicts. Check that the model is connected and its stiffness is positive, or request fewer "
-      "modes.",
+      "Cannot verify the {} lowest modes: the eigenvalue solver returned fewer modes, or modes other than those that the pivot "
+      "count predicts. Check that the model is connected and its stiffness is positive definite, or request fewer modes.",
       n);
 }
 
@@ -210,8 +209,7 @@ EigenModes lowest_modes(const Pencil& pencil, int n, double shift,
     keep(modes, std::size_t(n));
   }
   throw SolveFailure(
-      "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or "
-      "refine the mesh.",
+      "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or refine the mesh.",
       n);
 }
 
@@ -220,8 +218,7 @@ EigenModes lowest_modes(const linalg::SparseMatrix& stiffness, const linalg::Spa
   const GlobalIndex rows = parallel::sum(stiffness.comm(), stiffness.n_owned_rows());
   if (n > rows)
     throw Error(
-        "{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine "
-        "the model.",
+        "{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine the model.",
         n, rows);
   const linalg::SymmetricFactors factors(stiffness, mass, shift);
   const Pencil pencil{.comm = stiffness.comm(),

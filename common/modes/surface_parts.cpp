@@ -143,8 +143,7 @@ std::string surface_problem_of(const ModalModel& model) {
     const bool forward = uses.front().forward;
     if (uses.size() > 1 && std::ranges::all_of(uses, [&](const EdgeUse& u) { return u.forward == forward; }))
       return fmt::format(
-          "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of "
-          "them is inside out",
+          "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of them is inside out",
           uses[0].face + 1, uses[1].face + 1, forward ? edge.first : edge.second,
           forward ? edge.second : edge.first);
   }
@@ -299,7 +298,8 @@ class Sides {
 
 /// Reports a wrong orientation of one part. Empty if it is right or undetermined.
 std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
-  constexpr const char* rule = "(the vertices of a face must turn right-handed about its outward normal)";
+  constexpr const char* rule =
+      "(seen from outside, the vertices of a face must be in counterclockwise order)";
   const Votes votes = sides.of(part, samples);
   const double said = votes.outward + votes.inward;
   const double right = wanted == Facing::outward ? votes.outward : votes.inward, wrong = said - right;
@@ -308,8 +308,7 @@ std::string part_problem(const Sides& sides, std::size_t part, std::size_t sampl
     if (wrong >= 0.9 * said)
       return wanted == Facing::outward
                  ? fmt::format(
-                       "{} are inside out: their normals point into the structure, but must point out of it "
-                       "{}",
+                       "{} are inside out: their normals point into the structure, but must point out of it {}",
                        sides.name(part), rule)
                  : fmt::format(
                        "{} point out of the space that the surface encloses, but those of a cavity wall "
@@ -320,19 +319,18 @@ std::string part_problem(const Sides& sides, std::size_t part, std::size_t sampl
   if (!volume) {
     if (!(said >= 0.5 * votes.all)) return "";
     return fmt::format(
-        "cannot determine on which side of {} the structure lies: {:.0f} % of them face away from other "
-        "faces and {:.0f} % toward them. Give the complete surface of the structure, closed where it is "
-        "closed",
+        "cannot determine on which side of {} the structure lies: {:.0f} % of them face away from other faces and {:.0f} % "
+        "toward them. Give the complete surface of the structure, closed where it is closed",
         sides.name(part), 100 * votes.outward / said, 100 * votes.inward / said);
   }
   if (wanted == Facing::outward ? !(*volume < 0) : !(*volume > 0)) return "";
   return wanted == Facing::outward
              ? fmt::format(
-                   "{} are inside out: their normals point into the {:.3g} m^3 that the surface encloses, "
-                   "but must point out of it {}",
+                   "{} are inside out: their normals point into the volume of {:.3g} m^3 that the surface encloses, but must "
+                   "point out of it {}",
                    sides.name(part), -*volume, rule)
              : fmt::format(
-                   "{} point out of the {:.3g} m^3 that the surface encloses, but those of a cavity wall "
+                   "{} point out of the volume of {:.3g} m^3 that the surface encloses, but those of a cavity wall "
                    "('modes.cavity: true') must point into it {}",
                    sides.name(part), *volume, rule);
 }

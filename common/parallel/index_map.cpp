@@ -154,7 +154,7 @@ GlobalOrder::GlobalOrder(MPI_Comm comm, std::span<const GlobalIndex> ids, const 
       wrong = wrong || at == mine.end() || *at != id;
       rows_[r].push_back(static_cast<Index>(at - mine.begin()));
     }
-  if (any(comm, wrong)) throw Error("The numbers of distributed entries are not each owned by one rank.");
+  if (any(comm, wrong)) throw Error("Each number of a distributed entry must be owned by exactly one rank.");
   count_ = mine.size();
   first_ = exclusive_scan(comm, static_cast<GlobalIndex>(count_));
   n_global_ = sum(comm, static_cast<GlobalIndex>(count_));
@@ -181,7 +181,7 @@ std::optional<GlobalOrder> GlobalOrder::of_rows(MPI_Comm comm, std::span<const G
   const GlobalOrder there(comm, rows, rows.size()), here(comm, ids, ids.size());
   const std::vector<double> numbers_there(rows.begin(), rows.end()), numbers_here(ids.begin(), ids.end());
   if (any(comm, there.to_block(numbers_there, 1) != here.to_block(numbers_here, 1)))
-    throw Error("The rows have other numbers than the entries.");
+    throw Error("The numbers of the rows differ from those of the entries.");
   std::vector<double> row(rows.size());
   std::iota(row.begin(), row.end(), double(exclusive_scan(comm, static_cast<GlobalIndex>(rows.size()))));
   const std::vector<double> mine = here.from_block(there.to_block(row, 1), 1);

@@ -87,14 +87,13 @@ void declare(config::Section& s, TimeSchemeParameters& p, const std::string& aut
   if (!automatic.empty()) words.emplace(words.begin(), "auto", TimeScheme::automatic);
   s.choice("type", p.type, words)
       .doc(
-          "time integration scheme; all but euler are second order, all but trapezoidal damp the highest "
-          "modes" +
+          "time integration scheme; all but euler are second order, all but trapezoidal damp the highest modes" +
           automatic);
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)
       .doc(
-          "for generalised-alpha: spectral radius at high frequencies: the fraction of the amplitude of the highest "
-          "modes that remains after a step; 1 damps nothing");
+          "for generalised-alpha: spectral radius at high frequencies, the fraction of the amplitude of the highest modes that "
+          "remains after a step; 1 means no damping");
 }
 
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,

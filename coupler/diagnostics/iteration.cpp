@@ -122,7 +122,8 @@ class CouplingError final : public CouplingDiagnostic {
     const bool by_motion = noise_[2] > std::pow(limits.least_change(), 2) * noise_[3];
     const double relative = (by_motion ? 1 : limits.least_change()) * limits.relative * most_noise / share;
     const std::string sentence = fmt::format(
-        "coupling: residuals are {:.2g} of the interface's acceleration (limit {}), so loads due to added mass contain noise of that size",
+        "coupling: the residuals correspond to {:.2g} of the interface acceleration (limit {}), so loads due to added mass "
+        "contain noise of that relative size",
         share, most_noise);
     const std::string advice =
         fmt::format("use 'coupling.convergence.relative: {:.0e}', or a longer step", relative);
@@ -246,8 +247,7 @@ void ResidualGrowth::pass(double residual, double omega, AccelerationParameters:
   using Type = AccelerationParameters::Type;
   if (type == Type::constant) throw SchemeFailure(too_much_added_mass(factor(), growing_, omega));
   throw SolveFailure(
-      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {} iterations, {:.3g}-fold in the "
-      "last one; {}.",
+      "the coupling diverges: the residual grew {:.3g}-fold per iteration over {} iterations, {:.3g}-fold in the last one; {}.",
       factor(), growing_, omega,
       type == Type::aitken ? "`acceleration.type: iqn-ils` handles several modes at once"
                            : "the participants' own tolerances may be too loose for quasi-Newton");

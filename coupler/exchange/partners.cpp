@@ -145,15 +145,15 @@ void check_introductions(const CouplingParameters& parameters, const std::vector
     const std::vector<std::string> records = parts(p.introduction, '\x1e');
     if (before != nullptr && records[0] != parts(before->introduction, '\x1e')[0])
       throw Error(
-          "'{}' and '{}' read different configurations of preCICE: give both the same file. If it was edited, recreate "
-          "the case with `couplet import FILE --force`.",
+          "'{}' and '{}' read different preCICE configurations: give both the same file. If it was edited, recreate the case "
+          "with `couplet import FILE --force`.",
           before->name(), p.name());
     before = &p;
     if (!parameters.exchange || parameters.exchange->digest.empty()) continue;
     if (records[0] != parameters.exchange->digest)
       throw Error(
-          "coupling.exchange.digest: '{}' reads a configuration of preCICE that is not the one this case was made "
-          "of: it was edited, or is another file. Recreate the case with `couplet import FILE --force`.",
+          "coupling.exchange.digest: '{}' reads a preCICE configuration that differs from the one this case was created from: "
+          "either it was edited since, or it is a different file. Recreate the case with `couplet import FILE --force`.",
           p.name());
     for (std::size_t i = 1; i < records.size(); ++i)
       check_scheme(parameters, p.name(), parts(records[i], '\x1f'));

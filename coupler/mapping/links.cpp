@@ -37,8 +37,8 @@ std::vector<DatumSource> sources_of(const Datum& wanted, std::size_t taker, cons
     if (const Datum* datum = find_datum(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
   }
   if (found.empty())
-    throw Error("'{}' takes '{}', which no participant gives. Given are: {}.", sides[taker].name, wanted.name,
-                all.empty() ? "no data at all" : base::join(all));
+    throw Error("'{}' takes '{}', but no participant gives it. Data available: {}.", sides[taker].name,
+                wanted.name, all.empty() ? "none" : base::join(all));
   return found;
 }
 
@@ -105,11 +105,10 @@ PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std
     if (other == t) here = theirs.size();
     theirs.push_back(sides[other].places_taken(*find_datum(sides[other].interface.takes, given.name)));
   }
-  const auto taker_of =
-      nearest_of(comm, places, theirs,
-                 fmt::format("'{}' and '{}' both take '{}' of '{}' at the same location: it would count "
-                             "twice.",
-                             sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
+  const auto taker_of = nearest_of(
+      comm, places, theirs,
+      fmt::format("'{}' and '{}' both take '{}' of '{}' at the same location: it would count twice.",
+                  sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
   return part_of(places, taker_of, here);
 }
 

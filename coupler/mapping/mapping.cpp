@@ -60,8 +60,8 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
     throw Error("{}{}", text, advice);
   if (most_followers(comm, forth, from.starts) < 2 && count(comm, from) == count(comm, to)) return;
   throw Error(
-      "Ambiguous matching: several {} lie within {:.3g} m of each other or of the same one of the {}. Set a "
-      "smaller `coupling.mapping.tolerance`.",
+      "Ambiguous matching: several {} lie within the tolerance of {:.3g} m of each other, or match the same one of the {}. Set "
+      "a smaller `coupling.mapping.tolerance`.",
       to.what, tolerance, from.what);
 }
 
@@ -174,16 +174,15 @@ void require_sums(MPI_Comm comm, const PointSet& from, const PointSet& to,
   worst = parallel::max(comm, worst);
   if (!(worst < 1e-12))
     throw Error(
-        "Amounts that the {} give would differ by {:.2g} % from those that the {} take. Use "
-        "`coupling.mapping.type: nearest`.",
+        "The total given by the {} would differ by {:.2g} % from the total taken by the {}. Use `coupling.mapping.type: "
+        "nearest`.",
         from.what, 100 * worst, to.what);
 }
 
 void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
   if (n_from == 0 || n_to == 0)
     throw Error(
-        "There are {} {} and {} {}, but an interface needs some on both sides. Check which patches have "
-        "type interface.",
+        "There are {} {} and {} {}, but an interface needs at least one on each side. Check which patches have type interface.",
         n_from, from.what, n_to, to.what);
 }
 

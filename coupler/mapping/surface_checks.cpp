@@ -79,9 +79,8 @@ bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vec
 std::string not_nested(const std::string& from, const std::string& to) {
   return fmt::format(
       "The faces of '{}' and '{}' do not nest: vertices of either side lie between those of the other. With "
-      "`coupling.mapping.type: nearest` the wall would move in steps and the load would do different work "
-      "on the two sides. Set `coupling.mapping.type: projection`: it conserves work, force and moment on "
-      "any meshes.",
+      "`coupling.mapping.type: nearest` the wall would move stepwise and the load would do different work on the two sides. "
+      "Set `coupling.mapping.type: projection`: it conserves work, force and moment on any meshes.",
       from, to);
 }
 
@@ -150,9 +149,8 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
   const double apart = moves.area - moved.area, limit = 1e-6 * moved.area;
   if (apart < -limit)
     throw Error(
-        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the "
-        "mesh wall would not follow the structure. Set `type: interface` in the mesh mover for every patch "
-        "that has it in the fluid.",
+        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the mesh wall would not "
+        "follow the structure. Set `type: interface` in the mesh mover for every patch that has it in the fluid.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
     diagnostics::finding(
@@ -161,8 +159,8 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
          .number = apart,
          .limit = limit,
          .sentence = fmt::format(
-             "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
-             "patches that are not an interface of the fluid follow the nearest vertex",
+             "mesh motion: '{}' moves {} faces with the structure, but the interface of '{}' has {}: patches that are not an "
+             "interface of the fluid follow the nearest vertex",
              mover->name, moves.faces, fluid->name, moved.faces),
          .advice = "set another type for them"});
 }
@@ -206,10 +204,10 @@ PlaceReport compare_places(MPI_Comm comm, const Side& from, const Side& to, bool
   report.nests = all_near(comm, found, face) || all_near(comm, nearest(comm, source.points, target),
                                                          nearest(comm, source.points, source_faces));
   if (const int most = most_followers(comm, found, source.starts); most >= 3)
-    report.notes.push_back(
-        fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
-                    "motion is stepped. `mapping.type: projection` avoids this.",
-                    from.name, to.name, most));
+    report.notes.push_back(fmt::format(
+        "note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the motion is stepwise. "
+        "`mapping.type: projection` avoids this.",
+        from.name, to.name, most));
   return report;
 }
 

@@ -119,8 +119,7 @@ void Monitor::step(const coupling::Step& step, double time, const FixedPointResu
 std::string Monitor::summary(int halvings) const {
   const double steps = double(std::max(1L, steps_));
   std::string text = fmt::format(
-      "{} steps, {} halvings in {:.2f} s; coupling iterations: mean {:.2f}, max {}\n"
-      "  {:<20} {:>11} {:>11} {:>15}",
+      "{} steps, {} halvings in {:.2f} s; coupling iterations: mean {:.2f}, max {}\n  {:<20} {:>11} {:>11} {:>15}",
       steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
       "working");
   for (std::size_t i = 0; i < names_.size(); ++i)
@@ -147,9 +146,12 @@ std::string waiting_sentence(const std::vector<std::string>& names, const std::v
   if (seconds.size() < 2 || sum < too_short) return {};
   const auto slowest = std::ranges::max_element(seconds);
   const std::string& name = names[std::size_t(slowest - seconds.begin())];
-  if (side_by_side) return fmt::format("waiting: side by side, all wait for '{}', which takes longest", name);
-  return fmt::format("waiting: one after another, the others wait for '{}' {:.0f} % of the time at work",
-                     name, 100 * *slowest / sum);
+  if (side_by_side)
+    return fmt::format(
+        "waiting: the participants run concurrently, and all wait for '{}', which takes longest", name);
+  return fmt::format(
+      "waiting: the participants run one after another, and the others wait for '{}' during {:.0f} % of the computing time",
+      name, 100 * *slowest / sum);
 }
 
 }  // namespace couplet::coupler

@@ -29,12 +29,12 @@ void declare(config::Section& section, CouplingParameters::Exchange& p) {
       .doc("their names under `participants`, in the order of a step");
   section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
       .doc(
-          "serial: one after the other, each with the data of the preceding ones from this step. parallel: "
-          "all at the same time with the data of the last step");
+          "serial: one after another, each with the data that the preceding ones gave in this step. parallel: all at the same "
+          "time, with the data of the last step");
   section.value("digest", p.digest)
       .doc(
-          "digest of the precice-config.xml from which `couplet import` wrote the case: programs that "
-          "read another configuration, or a scheme or order other than its own, are refused; default: not checked");
+          "digest of the precice-config.xml from which `couplet import` wrote the case. A program that reads a different "
+          "configuration is refused, and so is a scheme or order that differs from that file; default: not checked");
 }
 
 /// Either fluid and structure, or an exchange.
@@ -42,10 +42,10 @@ std::string problem_of_roles(const CouplingParameters& p) {
   if (p.exchange) {
     const auto& list = p.exchange->participants;
     if (p.structure)
-      return "an exchange has no separate structure: it is one of its participants; use one or the other";
+      return "an exchange has no separate structure, because the structure is one of its participants; use either `exchange` "
+             "or `structure`";
     if (bool(p.fluid) != bool(p.mesh))
-      return "with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which "
-             "participant) or neither";
+      return "with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which participant) or neither";
     if (p.fluid && std::ranges::find(list, p.fluid->participant) == list.end())
       return "`fluid` with an exchange must be one of its participants";
     if (p.mesh && std::ranges::find(list, p.mesh->participant) != list.end())
@@ -77,10 +77,10 @@ std::vector<std::string> partners_of(const CouplingParameters& p) {
 void declare(config::Section& section, IntegralParameters& p, const std::vector<std::string>& partners) {
   section.value("participant", p.participant)
       .required()
-      .doc("participant whose interface is watched: its name under `participants`");
+      .doc("name, under `participants`, of the participant whose interface is watched");
   section.value("data", p.data)
       .required()
-      .doc("name of a datum it gives or takes, such as pressure-force, velocity or heat");
+      .doc("name of data that it gives or takes, such as pressure-force, velocity or heat");
   section.check(
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
@@ -138,17 +138,16 @@ void declare_participants(config::Section& section, CouplingParameters& p) {
                 "name of its displacement (m, or without a unit) at vertices in its program; a missing velocity is computed by second-order differences");
         s.value("load", r.load)
             .doc(
-                "name of its load (N) in its program, the sum of all forces; default: each force by its own name");
+                "name in its program of its load (N), which is the sum of all forces; default: each force has its own name");
       },
-      "participant that receives the load and gives the interface motion; absent with `mesh`: bodies move as the "
-      "mesh mover's boundaries prescribe (type: moving), nothing is iterated");
+      "participant that receives the load and gives the interface motion. Without it, but with `mesh`, bodies move as the mesh "
+      "mover's boundaries prescribe (type: moving), and nothing is iterated");
   declare_role(section, "mesh", p.mesh,
-               "participant that moves the mesh of the fluid; default: the mesh is "
-               "at rest");
+               "participant that moves the mesh of the fluid; default: the mesh is at rest");
   section.optional_section<CouplingParameters::Exchange>(
       "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
-      "instead of fluid, structure and mesh: participants of any kind that exchange data once per step; "
-      "each datum that one takes comes from the one that gives it");
+      "instead of fluid, structure and mesh: participants of any kind that exchange data once per step; data that one "
+      "participant takes come from the participant that gives them");
 }
 
 void declare_predictor(config::Section& section, CouplingParameters& p) {
@@ -158,9 +157,10 @@ void declare_predictor(config::Section& section, CouplingParameters& p) {
         s.value("order", p.predictor_order)
             .range(0, 2)
             .doc(
-                "initial guess of a step: 0 takes the last displacement; 1 adds the last velocity; 2 uses the "
-                "last two, which keeps the semi-implicit scheme second order; data without a velocity by a "
-                "polynomial of this order. Default 2, but 1 in explicit coupling and 0 in an explicit exchange");
+                "order of the extrapolation that gives the initial guess of a step. 0: last displacement. 1: also the last "
+                "velocity. 2: also the last two velocities, which keeps the semi-implicit scheme second order. Data without a "
+                "velocity are extrapolated by a polynomial of this order. Default: 2, but 1 in explicit coupling and 0 in an "
+                "explicit exchange");
         s.check(
             [&p] {
               const double order = p.predictor_order.value_or(0);
@@ -174,7 +174,8 @@ void declare_predictor(config::Section& section, CouplingParameters& p) {
 void declare_sub_steps(config::Section& section, CouplingParameters& p) {
   section.value("sub-steps", p.sub_steps)
       .doc(
-          "steps that a participant takes within each coupling step, by its name: {fluid: 4}; default 1. Its input is linear in time between the last and the new values, so that the coupling stays second order");
+          "number of steps that a participant takes within each coupling step, by its name: {fluid: 4}; default: 1. Its input "
+          "is interpolated linearly in time between the last and the new values, so that the coupling stays second order");
   section.check([&p] { return problem_of_sub_steps(p); }, "sub-steps");
 }
 
@@ -187,7 +188,8 @@ void declare_scheme(config::Section& section, CouplingParameters& p) {
                {"implicit", coupling::Scheme::implicit}})
       .doc(
           "explicit: one iteration per step. semi-implicit: mesh motion and momentum predictor once per step, pressure and "
-          "structure iterated. implicit: everything iterated. auto: starts semi-implicit and switches to implicit when viscous forces move too much of the mass");
+          "structure iterated. implicit: everything iterated. auto: starts semi-implicit and switches to implicit when the "
+          "fluid dragged along by friction becomes too important for the motion of the interface");
 }
 
 }  // namespace
@@ -197,7 +199,7 @@ void declare(config::Section& section, CouplingParameters& p) {
   declare_participants(section, p);
   section.section(
       "acceleration", [&](config::Section& s) { declare(s, p.acceleration); },
-      "computation of the next guess from the residual");
+      "method that computes the next iterate from the residual");
   section.section(
       "convergence", [&](config::Section& s) { declare(s, p.convergence); }, "criteria for accepting a step");
   declare_predictor(section, p);
@@ -209,14 +211,13 @@ void declare(config::Section& section, CouplingParameters& p) {
                {"parallel", Order::parallel},
                {"structure-first", Order::structure_first}})
       .doc(
-          "order of fluid and structure: serial: the structure with the load of the same iteration "
-          "(Gauss-Seidel). parallel: both at the same time (Jacobi). structure-first: the fluid with the "
-          "motion of the same iteration, and the load is iterated, as required by a fluid with `surface-density` "
-          "at its interface (Robin)");
+          "order of fluid and structure. serial: the structure uses the load of the same iteration (Gauss-Seidel). parallel: "
+          "both are solved at the same time (Jacobi). structure-first: the fluid uses the motion of the same iteration, and "
+          "the load is iterated, as required by a fluid with `surface-density` at its interface (Robin)");
   section.value("mesh-on-guess", p.mesh_on_guess)
       .doc(
-          "implicit: the mesh keeps the position of the initial guess of the step, as in the semi-implicit "
-          "scheme and in the implicit steps of auto: the iteration is stable for lighter structures");
+          "for `scheme: implicit`: the mesh stays where the initial guess of the step put it, as in the semi-implicit scheme "
+          "and in the implicit steps of auto; the iteration is then stable for lighter structures");
   section.check(
       [&] {
         return p.mesh_on_guess && (p.scheme != coupling::Scheme::implicit || !p.mesh)
@@ -242,22 +243,21 @@ void declare(config::Section& section, AccelerationParameters& p) {
       .choice("type", p.type,
               {{"constant", Type::constant}, {"aitken", Type::aitken}, {"iqn-ils", Type::iqn_ils}})
       .doc(
-          "constant: always the initial relaxation. aitken: adapted in each iteration from the last two "
-          "residuals. iqn-ils: quasi-Newton from the differences of this and earlier steps by least "
-          "squares");
+          "constant: always the initial relaxation. aitken: adapted in each iteration from the last two residuals. iqn-ils: "
+          "quasi-Newton by least squares over the differences of this and earlier steps");
   section.value("initial-relaxation", p.initial_relaxation)
       .range(1e-6, 2)
       .doc(
-          "relaxation of the very first iteration, or of all if constant; recommended: 1 / (1 + r) for the "
-          "added mass over the structural mass r");
+          "relaxation factor of the very first iteration, or of all if constant; recommended: 1 / (1 + r), where r is the "
+          "ratio of the added mass to the structural mass");
   section.value("reused-steps", p.reused_steps)
       .range(0, 1000)
-      .doc("iqn: number of earlier steps whose differences are reused");
+      .doc("iqn-ils: number of earlier steps whose differences are reused");
   section.value("filter", p.filter)
       .range(0, 1)
       .doc(
-          "iqn: a difference is dropped if less than this share is independent of newer ones; sensible "
-          "values are above the participants' noise over the convergence tolerance");
+          "iqn-ils: a difference is dropped if less than this fraction of it is linearly independent of newer ones; sensible "
+          "values exceed the ratio of the participants' noise to the convergence tolerance");
 }
 
 void declare(config::Section& section, ConvergenceParameters& p) {
@@ -269,14 +269,16 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section.value("absolute", p.absolute)
       .unit("m", 1e-18, 0.1)
       .not_negative()
-      .doc("or when the root mean square of r over the interface vertices is below this; 0 turns this off");
+      .doc(
+          "a step has also converged when the root mean square of r over the interface vertices is below this limit; 0 "
+          "disables it");
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
       .doc("maximum number of iterations; a step that needs more fails and is halved");
   section.choice("at-max-iterations", p.accepts_at_maximum, {{"fail", false}, {"accept", true}})
       .doc(
-          "after `max-iterations` without convergence: fail: the step is halved. accept: the step is accepted, with "
-          "the finding `unconverged-step`");
+          "what happens after `max-iterations` without convergence. fail: the step fails and is halved. accept: the step is "
+          "accepted, with the finding `unconverged-step`");
 }
 
 void declare(config::Section& section, MappingParameters& p) {
@@ -285,10 +287,10 @@ void declare(config::Section& section, MappingParameters& p) {
       .choice("type", p.type,
               {{"matched", Type::matched}, {"nearest", Type::nearest}, {"projection", Type::projection}})
       .doc(
-          "matched: every vertex and face must match one on the other side. nearest: displacements from the "
-          "nearest vertex, forces to the nearest face with their sum conserved, for faces that match or "
-          "nest. projection: for any faces: loads use the transpose of the motion's map, so work, force and "
-          "moment are conserved; local interpolants where the corners of faces are not known");
+          "matched: every vertex and face must match one on the other side. nearest: displacements are taken from the nearest "
+          "vertex and forces are given to the nearest face, which conserves their sum; for faces that match or nest. "
+          "projection: for any faces; loads use the transpose of the map of the motion, so work, force and moment are "
+          "conserved. Local interpolants are used where the corners of faces are not known");
   section.value("tolerance", p.tolerance)
       .unit("m", 1e-15, 1)
       .positive()

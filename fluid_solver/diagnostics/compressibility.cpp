@@ -184,15 +184,16 @@ ComplianceMeans::Totals ComplianceMeans::totals() const {
 // Density changes scale with half the squared Mach number: 5 % at 0.3.
 diagnostics::EffectFinding mach_number(double speed, const Sound& sound) {
   const double mach = speed / sound.speed;
-  return {.effect = "compressibility",
-          .number = mach,
-          .what = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)", speed,
-                              mach, sound.of, sound.speed),
-          .advice =
-              "density would change by more than 5 %: use a compressible solver; if the speed of sound "
-              "differs, set it in 'compressibility'",
-          .share =
-              1 / std::sqrt(1 - std::pow(std::min(mach, 0.9), 2)) - 1};  // of pressures [Prandtl and Glauert]
+  return {
+      .effect = "compressibility",
+      .number = mach,
+      .what = fmt::format("max speed {:.3g} m/s = {:.2g} times the speed of sound in {} ({:.4g} m/s)", speed,
+                          mach, sound.of, sound.speed),
+      .advice =
+          "the density would change by more than 5 %: use a compressible solver; if the speed of sound differs, set it in "
+          "'compressibility'",
+      .share =
+          1 / std::sqrt(1 - std::pow(std::min(mach, 0.9), 2)) - 1};  // of pressures [Prandtl and Glauert]
 }
 
 // If flow is stopped or driven faster than waves cross the domain, the pressure rises as rho c du or rho L
@@ -206,10 +207,12 @@ diagnostics::EffectFinding change_of_density(bool is_compressible, double densit
       .effect = is_compressible ? "small changes of density" : "waves of pressure",
       .number = change,
       .limit = 0.05,
-      .what = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", range, sound.of, change),
-      .advice = is_compressible
-                    ? "'compressibility' holds for small changes of density only: use a compressible solver"
-                    : "the flow changes faster than pressure waves would allow: add 'compressibility'",
+      .what = fmt::format("a pressure range of {:.3g} Pa changes the density of {} by a fraction of {:.2g}",
+                          range, sound.of, change),
+      .advice =
+          is_compressible
+              ? "'compressibility' is valid only for small changes of density: use a compressible solver"
+              : "the flow changes faster than pressure waves would allow: add 'compressibility'",
       .left_out = !is_compressible,
       .share = std::max(0., change - 2 * std::pow(speed / sound.speed, 2))};
 }
@@ -233,12 +236,14 @@ diagnostics::EffectFinding compliance(double density, double stroke, double pres
 // A column of length L responds to motion of rate omega as tan(omega L/c)/(omega L/c): 3 % more at 0.3.
 diagnostics::EffectFinding wave_time(double rate, double size, const Sound& sound) {
   const double phase = rate * size / sound.speed;
-  return {.effect = "waves of pressure",
-          .number = phase,
-          .what = fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of what moves it",
-                              sound.of, size / sound.speed, phase, 1 / rate),
-          .advice = "pressure waves return while that changes: add 'compressibility'",
-          .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
+  return {
+      .effect = "waves of pressure",
+      .number = phase,
+      .what = fmt::format(
+          "the travel time of sound across {} is {:.2g} s = {:.2g} times the time scale 1/omega = {:.2g} s of the driving motion",
+          sound.of, size / sound.speed, phase, 1 / rate),
+      .advice = "pressure waves return while this motion changes: add 'compressibility'",
+      .share = phase < 1 ? std::tan(phase) / std::max(phase, 1e-300) - 1 : 1};
 }
 
 template <int D>

@@ -130,8 +130,8 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
                          patch->name, wrong,
                          falls
                              ? fmt::format(
-                                   "gravity drives it, {:.3g} Pa of weight between openings of one pressure; of "
-                                   "fluid at rest outside, each has 'pressure: {}'",
+                                   "gravity drives it, because openings with the same pressure differ by {:.3g} Pa of "
+                                   "hydrostatic pressure; for fluid at rest outside, set 'pressure: {}' at each",
                                    whole.range, whole.pressure)
                              : "make it an inlet, or prescribe the driving pressure"),
            .subject = patch->name});
@@ -162,10 +162,12 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
          .number = way / extent.maxCoeff(),
          .limit = least,
          .sentence = fmt::format(
-             "inlet '{}': in the whole run the fluid enters by {:.3g} m, into a domain of {:.3g} x {:.3g} x {:.3g} m: questionable",
+             "inlet '{}': during the whole run the fluid advances by only {:.3g} m into a domain of {:.3g} x {:.3g} x {:.3g} "
+             "m: questionable",
              patch.name, way, extent[0], extent[1], extent[2]),
          .advice =
-             "if the mesh was drawn in millimeters, set 'mesh-scale: 0.001'; else go on until the flow has crossed it"});
+             "if the mesh was drawn in millimeters, set 'mesh-scale: 0.001'; otherwise continue until the flow has crossed the "
+             "domain"});
   }
   /// Reports one pressure over the height of an opening if the weight exceeds the dynamic pressure: fluid then leaves below and enters
   /// above. `volume`: that passed it in either direction [m^3].
@@ -179,8 +181,9 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
          .number = weight.range,
          .limit = dynamic,
          .sentence = fmt::format(
-             "outlet '{}': one pressure over its height, along which gravity ('body-force') changes that of fluid at "
-             "rest by {:.3g} Pa (limit: the dynamic pressure, {:.2g} Pa): it drives fluid out below and in above",
+             "outlet '{}': the pressure is uniform over its height, over which gravity ('body-force') changes the pressure of "
+             "fluid at rest by {:.3g} Pa (limit: the dynamic pressure, {:.2g} Pa): this drives fluid out at the bottom and in "
+             "at the top",
              patch.name, weight.range, dynamic),
          .advice = fmt::format("use 'pressure: {}'", weight.pressure),
          .subject = patch.name + ", weight"});

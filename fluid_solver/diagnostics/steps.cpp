@@ -123,9 +123,10 @@ class RingingPressure final : public diagnostics::Diagnostic {
         {.id = "ringing-pressure",
          .number = share,
          .limit = ringing_limit,
-         .sentence = fmt::format("the pressure rings: {:.2g} of it (limit {:g}) are waves of less than "
-                                 "four steps per period, which the trapezoidal rule does not damp",
-                                 share, ringing_limit),
+         .sentence = fmt::format(
+             "the pressure rings: a fraction {:.2g} of it (limit {:g}) consists of waves with fewer than four steps per "
+             "period, which the trapezoidal rule does not damp",
+             share, ringing_limit),
          .advice = "use 'scheme: three-level' in 'compressibility', or a shorter step"});
   }
   void visit(io::Archive& archive) override { archive.common("steps", steps_); }
@@ -188,9 +189,10 @@ std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
        .number = excess,
        .limit = 0.1,
        .what =
-           fmt::format("kinetic energy without work of boundaries or forces = {:.2g} of the total", excess),
+           fmt::format("kinetic energy not supplied by boundaries or forces = {:.2g} of the total", excess),
        .advice =
-           "the schemes generate it: a run with half the step, without a 'time-step' of the fluid, and one with a finer mesh show which",
+           "the numerical schemes generate it: a run with half the step and without the fluid's 'time-step', and one with a "
+           "finer mesh, show which scheme does",
        .left_out = false,
        .wrong_from = 0.5});
 }

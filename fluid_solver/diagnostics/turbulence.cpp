@@ -122,8 +122,7 @@ diagnostics::EffectFinding unresolved_layers(int dimension, double shear, double
           dimension == 2
               ? "steep layers may be thinner than the mesh: refine it; if the flow is turbulent, use 'turbulence', "
                 "'dimension: 3' and many cells in each direction"
-              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is "
-                "turbulent"};
+              : "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
   if (shear > limit && reynolds < laminar_below) {
     e.number = reynolds, e.limit = laminar_below, e.share = 0;
     e.what = fmt::format(
@@ -143,7 +142,7 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
       .effect = dimension == 3 ? "turbulence model" : "eddy viscosity in two dimensions",
       .number = eddy_viscosity,
       .limit = 0.01,
-      .what = fmt::format("max eddy viscosity = {:.2g} of the molecular", eddy_viscosity),
+      .what = fmt::format("max eddy viscosity = {:.2g} times the molecular viscosity", eddy_viscosity),
       .left_out = false};
   if (dimension == 3 || eddy_viscosity <= e.limit) {
     e.is_spare = true;
@@ -151,8 +150,8 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
     return e;
   }
   e.advice =
-      "vortices in two dimensions do not stretch, so it models no turbulence: omit 'turbulence', or use 'dimension: 3' "
-      "and many cells in each direction";
+      "vortices in two dimensions do not stretch, so the model represents no turbulence: omit 'turbulence', or use 'dimension: "
+      "3' and many cells in each direction";
   e.share = 1 - 1 / std::sqrt(1 + eddy_viscosity);
   return e;
 }

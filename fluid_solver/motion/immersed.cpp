@@ -369,7 +369,8 @@ FluidParameters with_surfaces(FluidParameters parameters, bool moving) {
   for (const auto& [name, body] : parameters.bodies) {
     if (body.surface == BodySurface::automatic) continue;
     if (all != BodySurface::automatic && body.surface != all)
-      throw Error("bodies.{}.surface: all bodies have the same kind of surface; choose steps or cut.", name);
+      throw Error("bodies.{}.surface: all bodies must have the same kind of surface; choose steps or cut.",
+                  name);
     all = body.surface;
   }
   if (all == BodySurface::automatic) all = moving ? BodySurface::cut : BodySurface::steps;

@@ -337,9 +337,9 @@ void MeshPath<D>::refuse_torn(std::span<const Vec3> points, double time) const {
   for (Index f = 0; f < mesh_.n_interior; ++f) size = std::max(size, mesh_.shift(f).norm());
   if (gap > most_torn * parallel::max(mesh_.comm, size))
     throw Error(
-        "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must "
-        "move alike: set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic "
-        "from side to side, which a rotation of the whole mesh is not.",
+        "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must move identically: "
+        "set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic from side to side, which a "
+        "rotation of the whole mesh is not.",
         time, gap);
 }
 

@@ -51,9 +51,9 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
     return has([who](const BoundaryParameters& b) { return condition_of(b).velocity == who; });
   };
   const auto sound = sound_of({}, p.density, p.viscosity);
-  if (!sound) return without("a model fluid, whose sound is not known");
+  if (!sound) return without("a model fluid, whose speed of sound is not known");
   if (!p.bodies.empty() || p.rotating_frame || velocity_by(GivenBy::flow))
-    return without("not available with another of the case's keys");
+    return without("not available with 'bodies', 'rotating-frame' or a convective outlet");
   if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
     return with("inflow compresses a part that 'gaps' shut off");
   if (scene.coupled && p.volume_level == VolumeLevelBy::nobody && velocity_by(GivenBy::structure) &&
@@ -66,9 +66,9 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
   };
   const double rate = prescribed_rate(p, along_the_box, scene.end_time, scene.time_step),
                phase = rate * mesh.largest_side() / sound->speed;
-  const std::string reason =
-      fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega of what is prescribed", sound->of,
-                  mesh.largest_side() / sound->speed, phase);
+  const std::string reason = fmt::format(
+      "the travel time of sound across {} is {:.2g} s = {:.2g} times the time scale 1/omega of the prescribed motion or flow",
+      sound->of, mesh.largest_side() / sound->speed, phase);
   if (phase > slow_waves) return with(reason);
   return without(scene.coupled && velocity_by(GivenBy::structure)
                      ? reason + "; the run reports if the compliance or the waves matter to the interface"
@@ -138,7 +138,7 @@ diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFact
 
 diagnostics::EffectChoice mesh_motion(const FluidParameters& p, const diagnostics::CaseScene& scene) {
   if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover"};
-  if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it"};
+  if (p.motion) return {"", "", "moving mesh", "'motion' prescribes the mesh motion"};
   const bool interface = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return condition_of(b.second).velocity == GivenBy::structure; });
   if (scene.coupled && interface)
@@ -174,12 +174,13 @@ double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of,
 std::vector<diagnostics::EffectChoice> choose_effects(const FluidParameters& p, const mesh::MeshFacts& mesh,
                                                       const diagnostics::CaseScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
-  return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
-           mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes"},
-          turbulence(p, mesh, speed),
-          viscous(p, mesh, speed),
-          choose_waves(p, mesh, scene),
-          mesh_motion(p, scene)};
+  return {
+      {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
+       mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has three-dimensional cells"},
+      turbulence(p, mesh, speed),
+      viscous(p, mesh, speed),
+      choose_waves(p, mesh, scene),
+      mesh_motion(p, scene)};
 }
 
 }  // namespace couplet::fluid

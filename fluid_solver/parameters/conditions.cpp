@@ -16,9 +16,9 @@ void declare_rotation(config::Section& r, RotationParameters& rotation) {
   r.value("speed", rotation.speed)
       .unit("rad/s", 1e-6, 1e6)
       .required()
-      .doc("expression of t [s] in rad/s; a ramp applies to it as well");
+      .doc("angular speed [rad/s], an expression of t [s]; a ramp applies to it as well");
   r.value("centre", rotation.centre).unit("m", 1e-9, 1e4).doc("a point on the axis");
-  r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D case rotates about z");
+  r.value("axis", rotation.axis).size(3).doc("axis of rotation in 3-D; a 2-D case rotates about z");
   r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
           "axis");
 }
@@ -45,23 +45,24 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
         t.value("file", table.file)
             .required()
             .doc(
-                "CSV file next to the case; its first line names the columns: some of x, y, z [m], t [s], "
-                "and u, v, w [m/s]; its lines form a full grid with linear interpolation");
+                "CSV file next to the case; its first line names the columns: some of x, y, z [m], t [s], and u, v, w [m/s]; "
+                "its lines must form a full grid, on which the values are interpolated linearly");
         t.choice("outside", table.outside,
                  {{"error", fv::GridTable::Outside::error}, {"clamp", fv::GridTable::Outside::clamp}})
-            .doc("for values beyond the ends: error, or clamp (hold the end values)");
+            .doc(
+                "for points or times outside the grid: error, or clamp (use the value at the nearest edge of the grid)");
       },
       "velocity from a file, instead of 'velocity'");
   s.optional_section<RotationParameters>(
       "rotation", b.rotation, declare_rotation,
-      "omega x (r - centre) added to the other velocity: a rotating inlet or wall; default: none");
+      "adds omega x (r - centre) to the velocity otherwise prescribed on this patch, for a rotating inlet or wall; default: none");
 }
 
 void declare_absorbing(config::Section& s, BoundaryParameters& b) {
   s.value("absorbing", b.absorbing)
       .doc(
-          "with `compressibility`: pressure waves leave without reflection (characteristic boundary); the prescribed "
-          "value then holds for the mean over the mean-time");
+          "with `compressibility`: pressure waves leave without reflection (characteristic boundary); the prescribed value is "
+          "then that of the mean over the time `mean-time`");
 }
 
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
@@ -71,7 +72,8 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc(
-          "for mean-speed. parabolic: zero at the rim of the patch, a straight line in 2-D, a disk in 3-D; symmetry planes at the rim continue it");
+          "velocity profile for mean-speed. parabolic: zero at the rim of the patch, which must be a straight line in 2-D or a "
+          "disk in 3-D; symmetry planes at the rim continue the profile");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   declare_absorbing(s, b);
@@ -105,8 +107,8 @@ void declare_outlet(config::Section& s, BoundaryParameters& b) {
   s.value("pressure", b.pressure).unit("Pa", 1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
       .doc(
-          "fluid that enters here comes from rest: 'pressure' is its total pressure, and it enters at a pressure lower by "
-          "rho U^2/2; false: 'pressure' is that in the moving fluid, and strong backflow may grow");
+          "true: fluid that enters here comes from rest, so that 'pressure' is its total pressure and the pressure in the "
+          "opening is lower by rho U^2/2. false: 'pressure' is the pressure of the moving fluid, and strong backflow may grow");
   declare_absorbing(s, b);
 }
 
@@ -119,10 +121,9 @@ void declare_interface(config::Section& s, BoundaryParameters& b) {
       .unit("kg/m^2", 1e-6, 1e6)
       .positive()
       .doc(
-          "mass per area of the structure behind the wall: the pressure equation then anticipates "
-          "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
-          "solid times its thickness, or less: too small costs iterations, too large may diverge; "
-          "default: the wall moves as the coupling prescribes");
+          "mass per area of the structure behind the wall, with which the pressure equation anticipates its response (Robin "
+          "condition); requires `coupling.order: structure-first`. Use the density of the solid times its thickness, or less: too "
+          "small a value costs iterations, and too large a value may diverge; default: the wall moves as the coupling prescribes");
 }
 
 using Entry = std::pair<BoundaryType, FlowCondition>;
@@ -152,12 +153,12 @@ const auto& condition_table() {
              .velocity = GivenBy::nobody,
              .passage = Passage::out}},
       // Outflow with the velocity convected to the patch by the mean outflow: Boundary::convect().
-      Entry{
-          BoundaryType::convective_outlet,
-          {.name = "convective-outlet",
-           .about = "convective-outlet: the flow leaves with the mean outflow speed, with zero mean pressure",
-           .velocity = GivenBy::flow,
-           .passage = Passage::out}},
+      Entry{BoundaryType::convective_outlet,
+            {.name = "convective-outlet",
+             .about =
+                 "convective-outlet: the flow leaves at the mean outflow speed and with zero mean pressure",
+             .velocity = GivenBy::flow,
+             .passage = Passage::out}},
       Entry{BoundaryType::no_slip, {.name = "no-slip", .about = "no-slip: wall at rest", .wall = true}},
       // Wall with tangential motion.
       Entry{BoundaryType::moving_wall,
@@ -169,7 +170,7 @@ const auto& condition_table() {
       // Impermeable surface without friction that moves with the mesh. A symmetry plane is the same.
       Entry{BoundaryType::slip,
             {.name = "slip",
-             .about = "slip, symmetry: no flow through it, no shear stress",
+             .about = "slip, symmetry: no flow through the patch and no shear stress",
              .row = without_friction,
              .velocity = GivenBy::mesh}},
       Entry{BoundaryType::symmetry,
@@ -194,7 +195,7 @@ const auto& condition_table() {
           BoundaryType::body,
           {.name = "body",
            .about =
-               "body: wall that moves by 'motion', or by its own motion in the mesh mover (type: moving there)",
+               "body: wall that moves as 'motion' prescribes, or by its own motion in the mesh mover (type: moving there)",
            .velocity = GivenBy::motion,
            .wall = true}},
   };
@@ -248,8 +249,7 @@ void declare_levels(config::Section& s, const FluidParameters& p) {
            "the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two");
     refuse(
         waves && flows, where + ".type",
-        "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with "
-        "'absorbing: true'");
+        "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with 'absorbing: true'");
   }
   refuse(upstream && !inlet, "compressibility.upstream-volume", "this fluid has no inlet; remove the key");
   refuse(!p.gaps.empty() && !given && !waves, "gaps",

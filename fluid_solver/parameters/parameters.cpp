@@ -42,9 +42,10 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("length", c.length).unit("m", 1e-9, 1e4).positive().doc("L: moment over q A L");
   s.value("pressure", c.pressure)
       .unit("Pa", 1e-9, 1e9)
-      .doc("p_ref of Cp = (p - p_ref) / q at these walls, written where 'surfaces' names them");
-  s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
-  s.value("lift", c.lift).doc("direction of the second coefficient");
+      .doc(
+          "reference pressure p_ref of Cp = (p - p_ref) / q, which is written for those of these walls that 'surfaces' names");
+  s.value("drag", c.drag).doc("direction of the first coefficient, a vector of any length");
+  s.value("lift", c.lift).doc("direction of the second coefficient, a vector of any length");
   s.value("centre", c.centre).unit("m", 1e-9, 1e4).doc("fixed reference point of the moment");
   s.value("axis", c.axis).size(3).doc("axis of the moment; in 2-D z");
   const auto needs_direction = [&s](const char* key, const auto& value) {
@@ -57,7 +58,7 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
       [&c] {
         return c.drag.normalized().cross(c.lift.normalized()).norm() > 1e-6
                    ? ""
-                   : "it is along 'drag'; both coefficients would be of the same force";
+                   : "it is parallel to 'drag', so that both coefficients would measure the same force";
       },
       "lift");
 }
@@ -92,8 +93,8 @@ void declare_gap(config::Section& s, GapParameters& gap) {
   s.value("height", gap.height)
       .unit("m", 1e-9, 1e4)
       .doc(
-          "height of the seat, the second wall, along 'direction', of x, y, z at rest: the mesh is refused if its wall is "
-          "elsewhere, and the 'contact' of a structure may name the gap; default: read from the mesh");
+          "height of the seat (the second wall) along 'direction', an expression of x, y, z at rest. The mesh is refused if "
+          "its wall is elsewhere, and the 'contact' of a structure may refer to this gap; default: read from the mesh");
   s.value("direction", gap.direction).doc("direction from the seat to the valve; default: z (y in 2-D)");
   s.check(
       [&gap] {
@@ -132,8 +133,7 @@ std::string gap_at_rest(const FluidParameters& p) {
 void declare_gaps(config::Section& s, FluidParameters& p) {
   s.map<GapParameters>(
       "gaps", p.gaps, declare_gap, "gap",
-      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
-      "and open again");
+      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, and open again");
   s.doubt([&p] { return gap_at_rest(p); }, "gaps");
 }
 
@@ -145,8 +145,7 @@ void declare_scene(config::Section& s, FluidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
-          "keys remain in meters");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D case has a depth of 1 m");
@@ -167,8 +166,8 @@ void declare_steps(config::Section& s, FluidParameters& p) {
       .unit("s", 1e-12, 1e10)
       .positive()
       .doc(
-          "largest step of the fluid itself; a coupling step is divided into equal parts not larger than "
-          "it. Absent: the stability limit");
+          "largest sub-step of the fluid; a coupling step is divided into equal sub-steps that do not exceed it; default: the "
+          "stability limit");
   s.value("safety-factor", p.safety_factor)
       .range(0.05, 1)
       .doc("fraction of the stability limit to use when time-step is absent");
@@ -203,13 +202,14 @@ void declare_steps(config::Section& s, FluidParameters& p) {
 void declare_start(config::Section& s, FluidParameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s", 1e-9, 1e4)
-      .doc("one expression of x, y, z [m] per component; made divergence-free at the start. Absent: at rest");
+      .doc(
+          "one expression of x, y, z [m] per component; made divergence-free at the start; default: at rest");
   s.value("initial-pressure", p.initial_pressure)
       .unit("Pa", 1e-9, 1e11)
       .doc(
-          "expression of x, y, z [m]; an initial guess only, but with `compressibility` the state to start from, beside an "
-          "initial velocity that is then taken as it is. Absent: zero; with `compressibility` and `initial-velocity` the pressure of "
-          "the outlets at the start (of several the one nearest to zero)");
+          "expression of x, y, z [m]. Without `compressibility` it is only an initial guess; with it, it is the initial state, "
+          "and an initial velocity is then used as given. Default: zero; with `compressibility` and `initial-velocity`, the "
+          "initial pressure of the outlets (of several, the one nearest to zero)");
   s.value("body-force", p.body_force)
       .unit("m/s^2", 1e-4, 1e6)
       .doc("force per mass, one expression of x, y, z [m] and t [s] per component; default: none");
@@ -223,21 +223,21 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
             {"auto", FaceValues::automatic}})
       .doc(
           "order in space of convection, explicit viscous term, fluxes and pressure gradient. fourth-order: along lines of "
-          "hexahedra or quadrilaterals whose faces lie straight across, away from walls, second order elsewhere; a mesh "
-          "at rest. auto: fourth-order where that is possible on at least half of the mesh");
+          "hexahedra or quadrilaterals whose faces are perpendicular to the line, away from walls, second order elsewhere; "
+          "requires a mesh at rest. auto: fourth-order where that is possible on at least half of the mesh");
   s.value("courant", p.courant)
       .range(1, 1000)
       .doc(
           "largest Courant number of a sub-step: convection becomes implicit in the cells whose explicit limit the sub-step "
-          "exceeds. For a few small cells that dictate many sub-steps, as at the edge of a gap; changes of the flow faster "
-          "than the sub-step are lost there. Above some 20, its equations may cost more than the sub-steps that they "
-          "save. Absent: explicit convection limits the sub-steps everywhere");
+          "exceeds. Use it if a few small cells, such as those at the edge of a gap, dictate many sub-steps; changes of the "
+          "flow that are faster than a sub-step are not resolved there. Above about 20, solving the implicit equations may "
+          "cost more than the sub-steps saved; default: explicit convection limits the sub-steps everywhere");
   s.check(
       [&p] {
         const bool is_explicit = p.viscous == ViscousTreatment::explicit_ || !p.bodies.empty();
         if (p.courant && is_explicit)
-          return "it makes convection implicit beside the viscous term, which 'viscous: explicit' and "
-                 "'bodies' make explicit; remove it";
+          return "it makes convection implicit together with the viscous term, which 'viscous: explicit' and 'bodies' make "
+                 "explicit; remove it";
         if (p.courant && p.time_step) return "'time-step' gives the sub-steps; remove one of the two";
         if (p.courant && p.face_values != FaceValues::second_order)
           return "convection of fourth order is explicit; remove it or 'face-values'";
@@ -247,10 +247,9 @@ void declare_schemes(config::Section& s, FluidParameters& p) {
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(
-          "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure "
-          "level that conserves its volume. none: such a fluid is rejected. structure: the coupler finds "
-          "the level from the structure's response to a pressure (coupler/volume.csv); the fluid's own "
-          "pressures keep zero mean");
+          "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure level that conserves "
+          "its volume. none: such a fluid is rejected. structure: the coupler finds the level from the structure's response to "
+          "a pressure (coupler/volume.csv); the fluid's own pressures keep zero mean");
 }
 
 /// Declares parts that move, close or rotate.
@@ -262,13 +261,13 @@ void declare_moving_parts(config::Section& s, FluidParameters& p) {
             .unit("m", 1e-9, 1e4)
             .required()
             .doc(
-                "expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the "
-                "surface");
+                "expression of x, y, z [m] and t [s] that is negative inside the body and approximately the distance to its "
+                "surface nearby");
         b.value("velocity", body.velocity)
             .unit("m/s", 1e-9, 1e4)
             .doc(
-                "one expression of x, y, z [m] and t [s] per component, the velocity of the motion that "
-                "level describes; default: at rest");
+                "velocity of the motion that 'level' describes, one expression of x, y, z [m] and t [s] per component; "
+                "default: at rest");
         b.choice("surface", body.surface,
                  {{"auto", BodySurface::automatic}, {"steps", BodySurface::steps}, {"cut", BodySurface::cut}})
             .doc(
@@ -323,8 +322,9 @@ void declare_models(config::Section& s, FluidParameters& p) {
   s.optional_section<CompressibilityParameters>(
       "compressibility", p.compressibility,
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
-      "weakly compressible fluid: pressure waves travel at the speed of sound, closed parts compress; default: "
-      "incompressible, judged by the speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
+      "weakly compressible fluid: pressure waves travel at the speed of sound, and closed parts are compressed; default: "
+      "incompressible, which the run assesses with the speed of sound of a gas at 1 atm or of a liquid, found from density and "
+      "viscosity");
 }
 
 /// Describes an error in the patches of output.flow-areas; empty if there is none.
@@ -369,18 +369,19 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
   for (const GradientField& field : gradient_fields())
     s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
   s.value("walls", p.walls)
-      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
+      .doc(
+          "write walls.csv with the shear and y+ of each wall; with a turbulence model it is always written");
   s.value("fluxes", p.fluxes)
       .doc(
-          "fluxes.csv: volume and momentum that pass through each patch out of the fluid (a load is a flux of momentum), mean "
-          "pressure");
+          "write fluxes.csv with the fluxes of volume and momentum out of the fluid through each patch (a load is a flux of "
+          "momentum) and the mean pressure");
   s.value("surfaces", p.surfaces)
       .doc(
-          "patches, or [all]: surface-<patch>.xdmf with pressure, traction, wall shear, y+ at walls, and Cp at walls that "
-          "'coefficients' names, at each output");
+          "patches, or [all], for which surface-<patch>.xdmf is written at each output with pressure, traction, wall shear, y+ "
+          "at walls, and Cp at walls that 'coefficients' names");
   s.map<CoefficientParameters>(
       "coefficients", p.coefficients, declare_coefficients, "name",
-      "coefficients.csv: force and moment coefficients of some walls, means over the step");
+      "write coefficients.csv with the force and moment coefficients of some walls as means over the step");
   s.map<FlowAreaParameters>(
       "flow-areas", p.flow_areas,
       [](config::Section& area, FlowAreaParameters& a) {
@@ -389,16 +390,15 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
         area.check([&a] { return a.from == a.to ? "'from' and 'to' are the same patch" : ""; }, "to");
       },
       "name",
-      "flow-areas.csv: effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)) with the mass flow m and mean "
-      "pressures");
+      "write flow-areas.csv with the effective flow area between two patches, m/sqrt(2 rho (p_from - p_to)), from the mass "
+      "flow m and the mean pressures");
   s.map<SampleParameters>(
       "samples", p.samples, declare_sample, "name",
-      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "
-      "at each output; the points move with the mesh, and points outside it are omitted");
+      "write sample-<name>.csv with velocity and pressure (with 'statistics' their means and rms) on a line or plane at each "
+      "output; the points move with the mesh, and points outside it are omitted");
   s.value("energy-budget", p.energy_budget)
       .doc(
-          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
-          "it");
+          "write energy.csv with the kinetic energy and the power that viscosity, eddy viscosity and pressure take from it");
 }
 
 /// Rules for what no scheme combines.

@@ -45,29 +45,29 @@ void declare(config::Section& s, CompressibilityParameters& p) {
             {"three-level", WaveScheme::three_level},
             {"trapezoidal", WaveScheme::trapezoidal}})
       .doc(
-          "time scheme of the pressure of a weakly compressible fluid (small changes of density, any acoustic Courant "
-          "number). three-level: damps what a step does not resolve. trapezoidal: a fifth of its error, damps nothing "
-          "(a finding reports when it rings). "
-          "none: incompressible, and judged by the other keys");
+          "time scheme of the pressure of a weakly compressible fluid (small changes of density, any acoustic Courant number). "
+          "three-level: damps waves that a step does not resolve. trapezoidal: has a fifth of the error of three-level, but no "
+          "damping (a finding reports if the pressure rings). none: incompressible, which the run assesses with the other "
+          "keys");
   s.value("mean-time", p.mean_time)
       .unit("s", 1e-9, 1e6)
       .positive()
       .doc(
-          "time over which the mean flow and pressure at `absorbing` boundaries are taken; waves of the angular frequency "
-          "w are reflected by 1/(2 w mean-time); default: ten times the travel time of sound across the mesh");
+          "averaging time of the flow and pressure at `absorbing` boundaries; waves of angular frequency w are reflected with "
+          "the coefficient 1/(2 w mean-time); default: ten times the travel time of sound across the mesh");
   s.value("speed-of-sound", p.speed_of_sound)
       .unit("m/s", 10, 2e4)
       .positive()
       .doc(
           "speed of sound of the fluid: air 343, water 1482, oil 1430 m/s at 20 degC, an ideal gas sqrt(gamma p / density); "
-          "default: by density and viscosity, if they are those of a gas at 1 atm or of a liquid");
+          "default: found from density and viscosity, if they are those of a gas at 1 atm or of a liquid");
   s.value("upstream-volume", p.upstream_volume)
       .unit("m^3", 1e-15, 1e6)
       .not_negative()
       .doc(
-          "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder), into which flows what the "
-          "inlets prescribe; the pressure at the inlets compresses it. In 2-D per meter of depth; for a symmetric half "
-          "the volume behind that half");
+          "unmeshed fluid volume upstream of the inlets (a plenum, a cylinder), into which the flow prescribed at the inlets "
+          "enters and which the pressure at the inlets compresses. In 2-D it is a volume per meter of depth; for a symmetric "
+          "half, it is the volume behind that half");
 }
 
 std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& given, double density,
@@ -85,7 +85,7 @@ double solved_sound(const std::optional<CompressibilityParameters>& p, double de
   const auto sound = sound_of(p, density, viscosity);
   if (!sound)
     throw Error(
-        "compressibility: a fluid of {:g} kg/m^3 and {:g} Pa s is no known gas or liquid: give its 'speed-of-sound', or "
+        "compressibility: a fluid of {:g} kg/m^3 and {:g} Pa s is not a known gas or liquid: give its 'speed-of-sound', or "
         "'scheme: none'.",
         density, viscosity);
   return sound->speed;

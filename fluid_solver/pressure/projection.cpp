@@ -167,9 +167,8 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, c
     solve_pressure(from, w, std::min(tolerance, loosest_tolerance), answer);
     if (pass == passes && to_the_end && step_.by.implicit)
       throw SolveFailure(
-          "The non-orthogonal correction of the pressure equation did not converge in {} iterations at t = "
-          "{:.6g} s: the mesh is too skewed, {:.0f} degrees between a face normal and the line of its cell "
-          "centers.",
+          "The non-orthogonal correction of the pressure equation did not converge in {} iterations at t = {:.6g} s: the mesh "
+          "is too skewed, {:.0f} degrees between a face normal and the line of its cell centers.",
           passes, step_.end(), degrees_);
     if (pass == passes) break;
     if (to_the_end) gradient_before_ = out_.gradient;

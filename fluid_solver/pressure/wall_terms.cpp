@@ -53,10 +53,9 @@ class ClosedDomain final : public Term<D> {
         std::abs(sums[total]) > round_speed * sums[speeds] &&
         sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
       throw Error(
-          "The fluid domain is closed: at t = {:.6g} s the net outflow is {:.6g} m^3/s, which neither the "
-          "prescribed velocities nor the interface motion balance. The pressure level that would push it "
-          "through the interface is not computed: add an outlet (a small one far from the interface is "
-          "enough).",
+          "The fluid domain is closed: at t = {:.6g} s the net outflow is {:.6g} m^3/s, which neither the prescribed "
+          "velocities nor the interface motion balance. The pressure level that would push it through the interface is not "
+          "computed: add an outlet (a small one far from the interface is enough).",
           step_.end(), sums[total]);
     const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
     for (std::size_t b = 0; b < out.w.size(); ++b) {

@@ -46,10 +46,10 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     if (const auto t = sample_time(view_)) check_faces(*t);
   }
   void look(diagnostics::Report& report) override {
-    report_present(report, "load within a face", within_faces(), 0.05,
-                   fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
-                               within_faces()),
-                   "the pressure varies within a face: refine the mesh there");
+    report_present(
+        report, "load within a face", within_faces(), 0.05,
+        fmt::format("relative error of the modal load with one force per face = {:.2g}", within_faces()),
+        "the pressure varies within a face: refine the mesh there");
   }
   // A load without effect so far may change, so it is judged at the end.
   void conclude(diagnostics::Report& report) override {
@@ -59,11 +59,12 @@ class PrescribedPressures final : public diagnostics::Diagnostic {
     if (part < 1e-9)
       report_present(
           report, "load that moves no mode", 1, 0.5,
-          fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
-                      part),
-          "they move nothing: with 'modes.file' the upper side is where the surface faces +z, whatever "
-          "the structure's own normal; equal pressures on both sides cancel; a mode of another symmetry "
-          "needs 'modes.number'",
+          fmt::format(
+              "modal load of the prescribed pressures = {:.1g} times what it would be if they acted along the motion",
+              part),
+          "these pressures excite no mode: with 'modes.file' the upper side is where the surface faces +z, regardless of the "
+          "structure's own normal; equal pressures on both sides cancel; a mode of another symmetry needs a larger "
+          "'modes.number'",
           std::numeric_limits<double>::infinity(), "given-without-effect");
   }
   void visit(io::Archive& archive) override { archive.common("sums", part_, most_, within_, fine_); }

@@ -110,9 +110,8 @@ class PlateTheory final : public diagnostics::Diagnostic {
     for (int k = 0; k < 60; ++k) x -= (x + stiffening * x * x * x - 1) / (1 + 3 * stiffening * x * x);
     report_neglected(
         report, "stretch of the mid-surface", deflection,
-        fmt::format("held on opposite sides: max deflection / thickness = {:.2g}", deflection),
-        "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for "
-        "finite strain",
+        fmt::format("plate held on opposite sides: max deflection / thickness = {:.2g}", deflection),
+        "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for finite strain",
         stiffening * x * x);
   }
 
@@ -131,10 +130,10 @@ class PlateTheory final : public diagnostics::Diagnostic {
     if (moves_freely() || weight > 9) share = std::max(share, weight);
     report_neglected(
         report, "motion in the plane", share,
-        fmt::format("{1}: part in the plane / part across it = {0:.2g}", share,
+        fmt::format("{1}: in-plane component / normal component = {0:.2g}", share,
                     p.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
-        "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a "
-        "volume model",
+        "no mode moves in the plane, so the in-plane component is neglected: apply only the normal component, or use a volume "
+        "model",
         std::min(share, 1.));
   }
 
@@ -151,9 +150,12 @@ class PlateTheory final : public diagnostics::Diagnostic {
     const double share = all > 0 ? std::sqrt(softening / all) : unknown;  // nothing moves
     report_neglected(
         report, "shear and rotary inertia", share,
-        fmt::format("by the thickness over half the wavelength of the modes they add {:.2g} to the motion",
-                    share),
-        "shear and rotary inertia soften short modes: keep fewer, or use a volume model", share);
+        fmt::format(
+            "estimated from the ratio of the thickness to half the wavelength of the modes, they increase the motion by a "
+            "fraction of {:.2g}",
+            share),
+        "shear and rotary inertia soften modes of short wavelength: keep fewer modes, or use a volume model",
+        share);
   }
   /// Thickness over half the bending wavelength at this frequency in the thickest part of the plate: D k^4 =
   /// rho h omega^2.

@@ -117,8 +117,9 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
     constexpr double limit = 0.1;
     report_present(
         report, "step that resolves the contact", share_, limit,
-        fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), one step is {:.2g} of that",
-                    duration_, share_),
+        fmt::format(
+            "an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), and one step is {:.2g} times this duration",
+            duration_, share_),
         fmt::format("the rebound is not resolved: use 'simulation.time-step: {:.2g} s', or a softer seat",
                     duration_ / 20));
     report.position.push_back({"step over the duration of an impact", share_, limit, "plate-contact"});
@@ -128,8 +129,7 @@ class ImpactOnSeat final : public diagnostics::Diagnostic {
     const Contact::DeepestPoint nearest = view_.contact->deepest(view_.state.q);
     if (nearest.depth > 0) return;
     report.sentences.push_back(fmt::format(
-        "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "
-        "{:.4g}).",
+        "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, {:.4g}).",
         -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
   }
   void visit(io::Archive& archive) override {

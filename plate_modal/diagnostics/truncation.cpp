@@ -25,8 +25,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
   void conclude(diagnostics::Report& report) override {
     if (motion_ && !view_.parameters.modes_file)
       report.sentences.emplace_back(
-          "truncated modes: their contribution under these loads is not estimated; compare with more modes "
-          "('modes.number').");
+          "truncated modes: their contribution under these loads is not estimated; compare with more modes ('modes.number').");
   }
 
  private:
@@ -37,8 +36,8 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     report_neglected(
         report, "deflection beyond the modes", apart,
         fmt::format("truncation error of the deflection = {:.2g}", apart),
-        "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
-        "more modes ('modes.number')",
+        "fields and probes show the full deflection, but modal.csv and the interface show only that of the modes: keep more "
+        "modes ('modes.number')",
         apart);
   }
   // A mode responds to a load of frequency f by 1/(1 - (f/f_mode)^2): at two thirds of its frequency 1.8
@@ -47,7 +46,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     const Motion::LoadFrequency seen = motion_->load_frequency(view_.step.is_last);
     report_neglected(
         report, "load faster than the modes", seen.over_last,
-        fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
+        fmt::format("load frequency {:.3g} Hz = {:.2g} times that of the highest retained mode",
                     seen.omega / (2 * std::numbers::pi), seen.over_last),
         "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')", unknown,
         2. / 3, "deflection-beyond-the-modes");
@@ -62,7 +61,7 @@ class TruncatedModes final : public diagnostics::Diagnostic {
     report_neglected(
         report, "initial velocity beyond the modes", lost,
         fmt::format("initial kinetic energy outside the modes = {:.2g}", lost),
-        "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'",
+        "a uniform velocity near supports needs many modes: keep more of them, or use 'initial-amplitudes'",
         0.5 * lost, 0, "deflection-beyond-the-modes");  // half that of an energy
   }
 

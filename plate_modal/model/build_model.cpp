@@ -104,9 +104,7 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
   for (const std::string& patch : s.patches)
     if (!p.boundaries.contains(patch))
       throw Error(
-          "participants.{}.boundaries: patch '{}' has no entry; give it type: free, clamped, "
-          "simply-supported or "
-          "symmetry.",
+          "participants.{}.boundaries: patch '{}' has no entry; give it type: free, clamped, simply-supported or symmetry.",
           name, patch);
 }
 
@@ -149,8 +147,8 @@ void refuse_lost_rigid(const PlateModel& plate, const modes::EigenModes& modes) 
   const auto rigid =
       std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
   throw Error(
-      "modes.number: the plate has {} free rigid motions (modes of 0 Hz), but only {} of them would be "
-      "kept, so that it would move in some ways and not in others. Keep at least {}.",
+      "modes.number: the plate has {} free rigid-body motions (modes of 0 Hz), but only {} of them would be kept, so that it "
+      "could move in some directions but not in others. Keep at least {}.",
       rigid, modes.eigenvalue.size(), rigid);
 }
 
@@ -198,12 +196,11 @@ void check_corners(Built& built, const Midsurface& surface, const std::vector<Su
   }
   const Vec2& x = surface.points[corners.front()];
   built.outline = fmt::format(
-      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} "
-      "degrees, one at ({:.4g}, {:.4g}): moments are singular there, and the error decreases as h^{:.2g} "
-      "instead of h^2, with cell size h. A polygonal plate deflects less than one with a curved edge, "
-      "however many sides it has (Babuska's paradox), and obtuse corners need a very fine mesh: with 13 "
-      "edges per side a 20-gon deflects 13 % too much, with 16 edges per side a 12-gon 22 % too little. "
-      "Draw curved edges as curves (Circle, Ellipse, Spline); otherwise compare with a finer mesh.",
+      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
+      "({:.4g}, {:.4g}): moments are singular there, and the error decreases as h^{:.2g} instead of h^2, with cell size h. A "
+      "polygonal plate deflects less than one with a curved edge, however many sides it has (Babuska's paradox), and obtuse "
+      "corners need a very fine mesh: with 13 edges per side a 20-gon deflects 13 % too much, with 16 edges per side a 12-gon "
+      "22 % too little. Draw curved edges as curves (Circle, Ellipse, Spline); otherwise compare with a finer mesh.",
       corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / base::degree,
       most / base::degree, x.x(), x.y(), order);
 }

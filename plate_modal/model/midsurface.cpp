@@ -108,8 +108,8 @@ void refuse_inside(const Midsurface& s, const mesh::RawMesh& raw,
     if (found == uses.end() || found->second < 2) continue;
     const Vec2 middle = 0.5 * (s.points[edge.first] + s.points[edge.second]);
     throw Error(
-        "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline "
-        "can be held: remove the curve from the physical curves, or cut a slit along it.",
+        "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline can be supported: "
+        "remove the curve from the physical curves, or cut a slit along it.",
         s.patches[raw.boundary_patch[element]], middle.x(), middle.y());
   }
 }

@@ -47,8 +47,7 @@ void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in "
-          "keys remain in meters");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimeters; positions in keys remain in meters");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant");
   declare_layers(s, p);
@@ -71,24 +70,23 @@ void declare_place(config::Section& s, Parameters& p) {
       "placement",
       [&](config::Section& q) {
         q.value("origin", p.placement.origin).unit("m", 1e-9, 1e4).doc("position of the mesh origin");
-        q.value("x-axis", p.placement.x).doc("direction of the mesh's x, of any length");
+        q.value("x-axis", p.placement.x).doc("direction of the mesh's x axis, a vector of any length");
         q.value("y-axis", p.placement.y)
-            .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
+            .doc("direction of the mesh's y axis, a vector of any length; the plate's normal is x cross y");
         q.check(
             [&]() -> std::string {
               // Scaled by their largest components first, because the square of a small length underflows.
               const Vec3 x = p.placement.x.stableNormalized(), y = p.placement.y.stableNormalized();
               return x.norm() > 0.5 && y.norm() > 0.5 && std::abs(x.dot(y)) < 1e-9
                          ? ""
-                         : "x-axis and y-axis must be at right angles, and not 0";
+                         : "x-axis and y-axis must be perpendicular and nonzero";
             },
             "x-axis");
       },
       "position of the mid-surface");
   s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
       .doc(
-          "sides that form the interface. upper: where the normal points. both: including the rims of free "
-          "edges");
+          "sides that form the interface. upper: where the normal points. both: including the rims of free edges");
 }
 
 void declare_modes(config::Section& s, Parameters& p) {
@@ -105,9 +103,9 @@ void declare_modes(config::Section& s, Parameters& p) {
             .doc("modes written by another program (docs/formats.md), instead of 'mesh'");
         m.value("cavity", p.cavity)
             .doc(
-                "with 'file': its surface is the wall of a cavity, so the normals must point into the "
-                "enclosed space; false: such a surface is rejected as inside out");
-        m.check([&] { return p.cavity && !p.modes_file ? "it applies to a 'file' only" : ""; }, "cavity");
+                "for 'file'. true: its surface is the wall of a cavity, so the normals must point into the enclosed space. "
+                "false: such a surface is rejected as inside out");
+        m.check([&] { return p.cavity && !p.modes_file ? "it applies only to a 'file'" : ""; }, "cavity");
         m.check(
             [&] {
               return p.modes_file && !p.mesh && p.number
@@ -144,13 +142,13 @@ void declare_loads(config::Section& s, Parameters& p) {
       [](config::Section& l, Load& v) {
         l.value("upper-pressure", v.upper)
             .unit("Pa", 1e-9, 1e11)
-            .doc("pressure on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
+            .doc(
+                "pressure on the side to which the normal points (with 'modes.file': +z), an expression of x, y, z, t");
         l.value("lower-pressure", v.lower)
             .unit("Pa", 1e-9, 1e11)
-            .doc("pressure on the opposite side (with 'modes.file': -z), of x, y, z, t");
+            .doc("pressure on the opposite side (with 'modes.file': -z), an expression of x, y, z, t");
       },
-      "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
-      "\"p.csv\")'");
+      "pressures acting on the sides, in addition to those of a fluid; 'table(t, \"p.csv\")' reads a table from a file");
   s.optional_section<ContactParameters>(
       "contact", p.contact,
       [](config::Section& c, ContactParameters& v) { declare(c, v, "the plate's normal"); },
@@ -235,7 +233,7 @@ void declare(config::Section& s, Parameters& p) {
       .doc("initial velocity of the whole structure");
   s.value("initial-amplitudes", p.initial_amplitudes)
       .unit("m", 1e-9, 1e4)
-      .doc("initial amplitudes of the modes: the displacement where each is largest");
+      .doc("initial amplitudes of the modes: for each mode, the displacement where it is largest");
   s.map<PlateProbe>(
       "probes", p.probes,
       [](config::Section& q, PlateProbe& v) {
@@ -243,14 +241,15 @@ void declare(config::Section& s, Parameters& p) {
             .required()
             .unit("m", 1e-9, 1e4)
             .doc(
-                "position on the undeformed surface, or within the thickness or a hundredth of the "
-                "structure's size of it: the nearest point of the surface is used");
+                "position on the undeformed surface, or no farther from it than the thickness or a hundredth of the "
+                "structure's size; the nearest point of the surface is used");
       },
       "probe", "points of the surface whose displacement is written to probes.csv at each step");
   s.section(
       "output",
       [&](config::Section& o) {
-        o.value("modes", p.output.modes).doc("write the mode shapes, one per time of a series");
+        o.value("modes", p.output.modes)
+            .doc("write the mode shapes as a time series with one shape per time");
         o.value("fields", p.output.fields).doc("write the moving surface at the output interval");
       },
       "what is written");

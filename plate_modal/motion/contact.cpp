@@ -62,8 +62,8 @@ void Contact::refuse_sliding(const Surface& surface, const Vec3& direction,
   const double cosine = std::sqrt(moves[0] / moves[1]);
   if (cosine >= least_cosine_to_seat) return;
   throw Error(
-      "contact.direction: the modes move the faces toward the seat along ({:g}, {:g}, {:g}) by only {:.0f} "
-      "% of their motion; at least {:.0f} % is needed for contact. The seat must lie across the motion.",
+      "contact.direction: the modes move the faces toward the seat along ({:g}, {:g}, {:g}) by only {:.0f} % of their motion; "
+      "at least {:.0f} % is needed for contact. The motion must be toward the seat.",
       direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0,
       100 * least_cosine_to_seat);
 }

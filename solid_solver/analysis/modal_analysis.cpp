@@ -151,7 +151,7 @@ modes::EigenModes solid_modes(const SolidProblem& problem, MethodParameters meth
                        : search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses || !by_factors) throw;
-    log::info("modes: the factorised search did not succeed: {}", e.what());
+    log::info("modes: the search with factors of the matrix failed: {}", e.what());
     method.preconditioner = MethodParameters::Preconditioner::multigrid;
     modes = search_by_iteration(problem, method, cell_mass, n, shift_part * scale);
   }

@@ -113,8 +113,8 @@ void SolidBody::check_supports() const {
 void SolidBody::make_seat() {
   if (!kernel_.is_symmetric())
     throw Error(
-        "contact: the seat needs the symmetric face gradient, and the boundaries or the method of this solid chose another: use "
-        "'solution-method: {{face-gradient: symmetric}}'.");
+        "contact: the seat needs the symmetric face gradient, but the boundaries or the method of this solid require another: "
+        "use 'solution-method: {{face-gradient: symmetric}}'.");
   std::vector<std::uint8_t> open;
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) open.push_back(elastic_.at(f).is_free());
   seat_ = std::make_unique<Seat>(mesh_, elastic_, kernel_, *parameters_.contact, open, !is_dynamic());
@@ -126,14 +126,13 @@ void SolidBody::find_mass() {
     has_no_energy = has_no_energy || elastic_.at(f).level;
   if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_no_energy))
     throw Error(
-        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy "
-        "functional, so this gradient does not support it; use 'symmetry' or 'frictionless', or "
-        "'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy functional, so "
+        "this gradient does not support it; use 'symmetry' or 'frictionless', or 'face-gradient: thesis'.");
   if (kernel_.is_symmetric() && parallel::any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
-        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement "
-        "and ends at vertices that it does not hold; this gradient would lose part of the reaction there. "
-        "Give the part its own patch, hold all components, or use 'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a part of a patch prescribes components of the displacement, but not those "
+        "of the vertices at its edge; this gradient would lose part of the reaction there. Give the part its own patch, "
+        "prescribe all components, or use 'face-gradient: thesis'.");
   if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
     throw Error(
         "material.poissons-ratio: {:g} exceeds {:g}, the limit of 'face-gradient: thesis'; "

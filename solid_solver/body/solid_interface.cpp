@@ -19,8 +19,7 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_)
     throw Error(
-        "interface: no patch has 'type: interface', so there is no face to receive a "
-        "temperature at.");
+        "interface: no patch has 'type: interface', so there is no face that could receive a temperature.");
   takes_temperature_ = true;
   body.temperature()->set_interface(description_.face_centres, map_->faces());
 }

@@ -58,8 +58,8 @@ void check_mesh(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   // The operator is not elliptic if a cell is not behind its face.
   if (const auto fold = mesh::find_fold(mesh, geometry))
     throw Error(
-        "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
-        "cell is inverted or bent over; remesh there.",
+        "The mesh is folded at {}: cell {} (counted from 0 in the file) lies on the wrong side of its face there. A cell is "
+        "inverted or bent over; remesh there.",
         text_of(fold->centre, mesh.dim), fold->cell_id);
   if (const auto bent = find_any(mesh, geometry, vertices.bent_points()))
     throw Error(
@@ -103,9 +103,8 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
                heat = !parameters.heat || is_apart(found, is_adiabatic);
     if (forces && heat) continue;
     throw Error(
-        "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that "
-        "{} passes there. {} If the parts are meant to be separate, such as the faces of a "
-        "crack, set 'touching-faces: apart'.",
+        "mesh: {} face{} of patch '{}', the first at {}, touch{} faces of {} without sharing their points, so that {} passes "
+        "there. {} If the parts are meant to be separate, such as the faces of a crack, set 'touching-faces: apart'.",
         found.count, found.count == 1 ? "" : "s", found.patch, text_of(found.where, body.mesh.dim),
         found.count == 1 ? "es" : "", found.patch == found.other ? "the same patch" : "'" + found.other + "'",
         heat     ? "no force"
@@ -114,8 +113,8 @@ void check_touching(const mesh::LoadedMesh& body, const SolidParameters& paramet
         found.alike && ties ? "Only faces in a group of the mesh are tied: put both sides into groups."
         : found.alike
             ? "Merge the double points of the mesh, or set 'touching-faces: tie'."
-            : "The faces of the two sides have other corners, so 'touching-faces: tie' cannot join them: "
-              "mesh both sides alike, or as one body.");
+            : "The faces of the two sides have different corners, so 'touching-faces: tie' cannot join them: mesh both sides "
+              "identically, or as one body.");
   }
 }
 
@@ -360,9 +359,8 @@ void check_supported(const mesh::Mesh& mesh, const elastic::ElasticOperator& ela
   }
   if (trouble.empty()) return;
   throw Error(
-      "boundaries: the supports of this static analysis leave rigid motions free: {}. Prevent them by "
-      "'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use "
-      "'analysis: dynamic'.",
+      "boundaries: the supports of this static analysis leave rigid-body motions free: {}. Prevent them by "
+      "'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.",
       trouble);
 }
 

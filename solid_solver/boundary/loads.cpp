@@ -110,9 +110,8 @@ void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const 
   if ((lost_ * moment).norm() <= rounding * scale) return;
   const Vec3 axis = (lost_ * moment).normalized();
   throw Error(
-      "{}: the face centers lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment "
-      "about ({:.3g}, {:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or "
-      "use 'type: force'.",
+      "{}: the face centers lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment about ({:.3g}, "
+      "{:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or use 'type: force'.",
       where_, centre_[0], centre_[1], centre_[2], axis[0], axis[1], axis[2], (lost_ * moment).norm());
 }
 
@@ -350,8 +349,8 @@ std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geome
           where, place_of(load.point, mesh.dim), nearest.distance, nearest.width);
     if (nearest.is_open == 0)
       throw Error(
-          "{}.point: the face nearest to {} m belongs to patch '{}' and is held there, so a force on it has "
-          "no effect. Move the point, or give a 'radius' that reaches unsupported faces.",
+          "{}.point: the face nearest to {} m belongs to patch '{}' and is supported there, so a force on it has no effect. "
+          "Move the point, or give a 'radius' that reaches unsupported faces.",
           where, place_of(load.point, mesh.dim), mesh.patches[std::size_t(nearest.patch)].name);
     if (nearest.face >= 0) faces.push_back(nearest.face);
     return faces;
@@ -365,7 +364,7 @@ std::vector<Index> faces_of_point_load(const mesh::Mesh& mesh, const mesh::Geome
         "{}.radius: no unsupported face has its center within {:g} m of {} m; the nearest face is {:g} m "
         "away{}.",
         where, load.radius, place_of(load.point, mesh.dim), nearest.distance,
-        nearest.is_open ? "" : " and is held");
+        nearest.is_open ? "" : " and is supported");
   return faces;
 }
 

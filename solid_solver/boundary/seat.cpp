@@ -49,8 +49,8 @@ Seat::Seat(const mesh::Mesh& mesh, const elastic::ElasticOperator& rows, const e
   direction_ /= length;
   if (parallel::sum(mesh.comm, GlobalIndex(faces_.size())) == 0)
     throw Error(
-        "contact: no face of the solid points toward the seat. Check 'direction' (from the seat to the solid) and "
-        "'where'; only faces with a known force (free, interface, traction, pressure) can meet a seat.");
+        "contact: no face of the solid points toward the seat. Check 'direction' (from the seat to the solid) and 'where'; "
+        "only faces with a known force (free, interface, traction, pressure) can touch a seat.");
   if (!p.starts_inside) refuse_start_inside();
 }
 
@@ -64,8 +64,8 @@ void Seat::refuse_start_inside() const {
     if (all[i] > all[worst]) worst = i;
   if (all[worst] > 0)
     throw Error(
-        "contact.height: the solid starts {:.3g} m inside the seat, at ({:.4g}, {:.4g}, {:.4g}), which would push it off at "
-        "once. Move the seat or the mesh, or set 'starts-inside: true'.",
+        "contact.height: the solid starts {:.3g} m inside the seat, at ({:.4g}, {:.4g}, {:.4g}), which would push it off "
+        "immediately. Move the seat or the mesh, or set 'starts-inside: true'.",
         all[worst], all[worst + 1], all[worst + 2], all[worst + 3]);
 }
 

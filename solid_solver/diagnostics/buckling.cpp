@@ -49,7 +49,7 @@ double limit_of(const BucklingEstimate& found) {
 std::string neglected(const BucklingEstimate& found) {
   return "linear theory neglects the softening by these loads" +
          (found.growth > BucklingEstimate::most_growth
-              ? fmt::format(", which adds {:.2g} of the displacement", found.growth)
+              ? fmt::format(", which increases the displacement by a fraction of {:.2g}", found.growth)
               : std::string());
 }
 
@@ -96,7 +96,7 @@ std::optional<diagnostics::Finding> dynamic_buckling_finding(const BucklingEstim
       .sentence = fmt::format(
           "buckling: the last loads are at least {:.3g} times the buckling load (limit {:.2g}): {}",
           1 / found.factor, 1 / limit_of(found),
-          found.factor < 1 ? "if these loads last, the body buckles; linear theory does not show it"
+          found.factor < 1 ? "if these loads last, the body buckles, which linear theory does not show"
                            : neglected(found)),
       .advice = "use 'kinematics: finite-strain'"};
 }
@@ -118,12 +118,11 @@ std::optional<diagnostics::Finding> buckling_finding(const BucklingEstimate& fou
                       "equilibrium is unstable",
                       *how == '\0' ? "" : "at least ", 1 / found.factor),
       .advice =
-          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
+          holds ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives load factors and mode shapes"
           : found.factor < absurd
               ? "check the units of 'youngs-modulus', of the loads and of the mesh"
-              : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
-                "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling "
-                "state"};
+              : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives load factors and mode shapes, "
+                "and 'kinematics: finite-strain' with a small lateral load gives the post-buckling state"};
 }
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields,
@@ -217,9 +216,9 @@ void LinearBuckling::see(diagnostics::Report& report) {
     return;
   for (const FreeMotion& free : free_motions(body.mesh(), body.elastic()))
     if (!free.modes.empty())
-      return report.sentences.push_back(
-          fmt::format("nothing holds the solid: {}; a body that can move freely has no buckling load.",
-                      base::join(free.modes)));
+      return report.sentences.push_back(fmt::format(
+          "the solid is not fully supported: {}; a body that can move freely has no buckling load.",
+          base::join(free.modes)));
   const BucklingEstimate found =
       estimate_buckling(body, view_.fields, view_.stepper, *method, compression_seen_, searches_);
   if (!found.matters()) return;

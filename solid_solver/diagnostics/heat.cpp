@@ -76,9 +76,8 @@ void HeatSwing::observe(diagnostics::Report& report) {
        .number = share,
        .limit = noticeable,
        .sentence = fmt::format(
-           "the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range "
-           "of {:.3g} K: 'heat: {{scheme: trapezoidal}}' does not damp unresolved modes. Use 'scheme: "
-           "three-point' or 'euler', or shorter steps.",
+           "the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range of {:.3g} K: 'heat: {{scheme: "
+           "trapezoidal}}' does not damp unresolved modes. Use 'scheme: three-point' or 'euler', or shorter steps.",
            size, range_.value())});
 }
 
@@ -97,8 +96,8 @@ class ImpossibleTemperature final : public diagnostics::Diagnostic {
            .number = lowest,
            .limit = 0,
            .sentence = fmt::format(
-               "the temperature falls to {:.4g} K, below absolute zero: more heat is drawn than there is; "
-               "check fluxes, films and sources, their signs and units",
+               "the temperature falls to {:.4g} K, below absolute zero: more heat is withdrawn than the body contains; check "
+               "the signs and units of fluxes, films and sources",
                lowest)});
   }
 
@@ -162,10 +161,12 @@ void HeatStorage::look(diagnostics::Report& report) {
           {.effect = "storage of heat",
            .number = stored > 0 ? lag : 1,
            .limit = diagnostics::no_verdict,
-           .what = stored > 0 ? fmt::format("heat needs about {:.2g} s to spread through the solid, the "
-                                            "temperature changes within {:.2g} s",
-                                            time, range / rate)
-                              : "the temperature changes, and no 'specific-heat' is given",
+           .what =
+               stored > 0
+                   ? fmt::format(
+                         "heat needs about {:.2g} s to spread through the solid, but the temperature changes within {:.2g} s",
+                         time, range / rate)
+                   : "the temperature changes, but no 'specific-heat' is given",
            .advice = "use 'analysis: transient' in 'heat'",
            .share = stored > 0 ? lag / (1 + lag) : std::numeric_limits<double>::quiet_NaN()}))
     report.findings.push_back(std::move(*finding));

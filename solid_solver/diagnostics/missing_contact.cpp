@@ -29,8 +29,8 @@ class MissingContact final : public diagnostics::Diagnostic {
              .number = share,
              .what =
                  fmt::format("faces pass through each other by {:.2g} of the largest displacement", share),
-             .advice = "there is no contact of bodies with each other: hold the faces apart, or end the "
-                       "loads before they meet",
+             .advice =
+                 "contact between bodies is not modeled: keep the faces apart, or end the loads before they touch",
              .share = std::min(share, 1.)}));
   }
 

@@ -95,10 +95,9 @@ Opinion spare_inertia(double kinetic_over_strain, double steps) {
       {.effect = "inertia",
        .number = kinetic_over_strain,
        .limit = 1e-3,
-       .what =
-           fmt::format("max kinetic / largest strain energy = {:.2g}; 'analysis: static' takes one step for "
-                       "the final state",
-                       kinetic_over_strain),
+       .what = fmt::format(
+           "max kinetic / largest strain energy = {:.2g}; 'analysis: static' computes the final state in one step",
+           kinetic_over_strain),
        .left_out = false,
        .is_spare = true,
        .saves = 1 - 1 / steps});
@@ -130,10 +129,10 @@ Opinion neglected_geometry(const P& p, const Deformation& d,
                  : !std::isnan(buckling_factor)
                      ? "lateral motion grows as the load nears the buckling load: use "
                        "'kinematics: finite-strain'"
-                 : large_strain     ? "use 'kinematics: finite-strain'"
-                 : d.gradient < 0.1 ? "expect errors of a few per cent"
-                                    : "the result holds for linear theory, not for the body: use "
-                                      "'kinematics: finite-strain'",
+                 : large_strain ? "use 'kinematics: finite-strain'"
+                 : d.gradient < 0.1
+                     ? "expect errors of a few percent"
+                     : "linear theory does not describe the real body here: use 'kinematics: finite-strain'",
        .share = is_known ? share : std::nan("")});
 }
 
@@ -142,7 +141,8 @@ Opinion neglected_yielding(double share_of_yield) {
       {.effect = "yielding",
        .number = share_of_yield,
        .what = fmt::format("max equivalent stress / yield strength = {:.2g}", share_of_yield),
-       .advice = "the body would yield: the result is that of an elastic body; use a program with plasticity",
+       .advice =
+           "the body would yield, but the result is that of an elastic body; use a program with plasticity",
        .share = std::clamp(share_of_yield - 1, 0., 1.)});  // of a place
 }
 
@@ -173,11 +173,12 @@ Opinion near_incompressibility(const P& p) {
        .number = nu,
        .limit = 0.45,
        .what = fmt::format("max Poisson's ratio = {:g}", nu),
-       .advice = has_orthotropic(p)
-                     ? "coarse meshes may be too stiff there, and an orthotropic material has no "
-                       "volume strain per cell: compare two meshes"
-                     : "coarse meshes are too stiff or worse there: use 'solution-method: "
-                       "{face-gradient: symmetric}' with one volume strain per cell",
+       .advice =
+           has_orthotropic(p)
+               ? "coarse meshes may be too stiff there, and an orthotropic material has no "
+                 "volume strain per cell: compare two meshes"
+               : "coarse meshes are too stiff or otherwise inaccurate there: use 'solution-method: {face-gradient: symmetric}' "
+                 "with one volume strain per cell",
        .left_out = false});
 }
 
@@ -194,7 +195,7 @@ Opinion neglected_thermal_strain(const P& p, double gradient, double range, doub
        .number = share,
        .limit = diagnostics::no_verdict,
        .what = fmt::format(
-           "a temperature {} of {:.3g} K, times {:.3g} 1/K, would strain a free body by {:.2g}; max |grad u| = {:.2g}",
+           "a temperature {} of {:.3g} K times {:.3g} 1/K would cause a free thermal strain of {:.2g}; max |grad u| = {:.2g}",
            own ? "change" : "range", kelvins, coefficient, strain, gradient),
        .advice = "use 'thermal-expansion'",
        .share = own ? share : std::nan("")});

@@ -36,8 +36,8 @@ void Stability::observe(diagnostics::Report& report) {
   std::string where =
       fmt::format("it was lost near t = {:.4g} s, between {:g} and {:g} s", lost, time_, now.time);
   if (load.norm() > 0)
-    where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
-                         then.norm() / load.norm());
+    where += fmt::format(", at a total load of about {:.4g} N, which is {:.3g} times the load of this step",
+                         then.norm(), then.norm() / load.norm());
   report.findings.push_back(
       {.id = "unstable-equilibrium",
        .severity = base::Severity::wrong,
@@ -47,8 +47,8 @@ void Stability::observe(diagnostics::Report& report) {
            "stability of the equilibrium: min stiffness loaded / unloaded = {:.2g} (limit 0): unstable; {}",
            stiffness, where),
        .advice =
-           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
-           "the linear body gives load factors and shapes"});
+           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of the linear body "
+           "gives load factors and mode shapes"});
 }
 
 void Stability::see_limits(const LoadPath& path) {
@@ -87,7 +87,7 @@ void Stability::conclude(diagnostics::Report& report) {
        .sentence = fmt::format("stability of the last equilibrium: min stiffness loaded / unloaded = {:.2g} "
                                "(limit 0): unstable, on the load path between limit points",
                                path->stiffness()),
-       .advice = "a later 'end-time' follows the path to a stable one"});
+       .advice = "with a later 'end-time' the path may reach a stable equilibrium"});
 }
 
 void Stability::visit(io::Archive& archive) {
@@ -98,21 +98,19 @@ namespace {
 
 const char* cure_of(const SolidView& view) {
   if (view.body.large_strain())
-    return "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
-           "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it";
+    return "the time scheme does not conserve the energy of a nonlinear law; a shorter step, 'energy-momentum: true' or "
+           "'time-scheme: {type: bathe}' prevents this growth";
   if (view.body.kernel().is_symmetric()) return "a shorter step or 'time-scheme: {type: bathe}' prevents it";
-  return "the operator of 'solution-method: {face-gradient: thesis}' is not symmetric, "
-         "so undamped motion grows on skewed, stretched or perturbed cells; use 'face-gradient: "
-         "symmetric', or damp it by 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: "
-         "...}'; 'output: {spectrum: true}' computes its rate on a coarse mesh of the same kind";
+  return "the operator of 'solution-method: {face-gradient: thesis}' is not symmetric, so undamped motion grows on skewed, "
+         "stretched or perturbed cells; use 'face-gradient: symmetric', or damp it by 'time-scheme: {type: bathe}' or a little "
+         "'damping: {stiffness: ...}'; 'output: {spectrum: true}' computes the growth rate on a coarse mesh of the same kind";
 }
 
 }  // namespace
 
 std::string EnergyAudit::text() const {
   return fmt::format(
-      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J "
-      "({:+.2g} %)",
+      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J ({:+.2g} %)",
       held, given, 100 * created());
 }
 
@@ -195,8 +193,8 @@ void EnergyBalance::look(diagnostics::Report& report) {
   const bool is_by_partner = -by_vertices > 0.5 * (audit_.held - audit_.given);
   const char* cure =
       is_by_partner
-          ? "the partner's loads act on faces and the partner sees vertices, which move differently "
-            "on so few faces: refine the mesh at the interface"
+          ? "the partner's loads act on faces, but the partner receives the motion of vertices, which differs on so few faces: "
+            "refine the mesh at the interface"
           : cure_of(view_);
   if (audit_.is_hopeless() && !is_by_partner)
     throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,

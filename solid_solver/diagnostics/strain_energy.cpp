@@ -83,7 +83,7 @@ bool StrainAudit::is_doubtful() const {
 
 std::string StrainAudit::text() const {
   std::string text = fmt::format(
-      "energy balance: half the work of the loads {:.6g} J, strain energy {:.6g} J ({:.2g} % apart)",
+      "energy balance: half the work of the loads is {:.6g} J and the strain energy {:.6g} J ({:.2g} % apart)",
       stress_work, strain_energy, 100 * mismatch());
   if (inner_variation > most_variation)
     text += fmt::format(
@@ -197,8 +197,9 @@ void StrainEnergy::look(diagnostics::Report& report) {
        .number = audit.mismatch(),
        .limit = StrainAudit::most_mismatch,
        .sentence = fmt::format("{}: displacement not reliable", audit.text()),
-       .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
-                 "along it, few tetrahedra or prisms across, nu near 0.5"});
+       .advice =
+           "refine the mesh, especially across the bending direction; typical causes are cells elongated along it, few "
+           "tetrahedra or prisms across, and nu near 0.5"});
 }
 
 void StrainEnergy::conclude(diagnostics::Report& report) {

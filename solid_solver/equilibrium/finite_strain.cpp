@@ -249,8 +249,7 @@ linalg::SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double
     if (std::max(now.residual, whole_) <= std::max(tolerance_ * scale, floor())) break;
     if (statistics.iterations == most_iterations)
       throw SolveFailure(
-          "Newton's method did not converge: after {} iterations the residual is {:.2g} of the load "
-          "(tolerance {:.0e}). {}",
+          "Newton's method did not converge: after {} iterations the residual is {:.2g} of the load (tolerance {:.0e}). {}",
           statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
     const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
     const double eta =
@@ -338,7 +337,7 @@ linalg::SolveStatistics FiniteStrain::press(const Load& load, std::span<double> 
     if (one.iterations == 0) return all;
     if (i == most_multipliers)
       throw SolveFailure(
-          "The pressure of the rigid seat did not settle in {} corrections (last change {:.1e} of it).",
+          "The contact pressure on the rigid seat did not converge in {} corrections (last relative change {:.1e}).",
           most_multipliers, change);
   }
 }
@@ -409,8 +408,8 @@ void FiniteStrain::set_expansion(std::vector<double> strains) {
   for (double& strain : strains) least = std::min(least, strain += 1);
   if (!(parallel::min(mesh_.comm, least) > 0))
     throw Error(
-        "thermal-expansion: a thermal strain of -1 or less leaves nothing of the body; check "
-        "'material.expansion' and the temperatures.");
+        "thermal-expansion: a thermal strain of -1 or less would shrink the body to nothing; check 'material.expansion' and "
+        "the temperatures.");
   kernel_->set_stretch(strains);
   jump_.set_stretch(std::move(strains));
   if (std::exchange(is_restored_, false)) jump_.settle();

@@ -163,9 +163,9 @@ std::string folded_support(const mesh::Mesh& mesh, const elastic::ElasticOperato
   const Told& most = *std::ranges::max_element(all, {}, &Told::height);
   if (!(most.height > 0) || most.patch < 0) return "";
   return fmt::format(
-      "Beside '{}' the free surface has folded beyond the plane of the support, by {:.2g} m: a wider support "
-      "would touch it there, which is not modeled, and beyond this load equilibrium is lost cell by cell, on "
-      "finer meshes earlier. End the load here, or let the sides widen toward the support.",
+      "Next to '{}' the free surface has folded past the plane of the support by {:.2g} m. It would touch a wider support "
+      "there, which is not modeled. Beyond this load, equilibrium is lost cell by cell, and earlier on finer meshes. End the "
+      "load here, or let the sides widen toward the support.",
       mesh.patches[std::size_t(most.patch)].name, most.height);
 }
 
@@ -224,9 +224,9 @@ void StepJump::end(MPI_Comm comm, std::span<const double> u, double length, cons
   }
   if (const double found = beyond(comm, u, later, growth); found > limit)
     throw SolveFailure(
-        "The load step moved some of the body further than its stiffness before and after it gives, by {:.2g} of the "
-        "largest motion (limit {:g}): it jumped past a limit point of the load, or past soft states that a shorter step "
-        "finds; 'load-stepping: {{type: arc-length}}' follows a path through limit points.",
+        "The load step moved part of the body farther than the stiffness before and after the step implies, by {:.2g} of the "
+        "largest motion (limit {:g}): it jumped past a limit point of the load, or past soft states that a shorter step would "
+        "find; 'load-stepping: {{type: arc-length}}' follows a path through limit points.",
         found, limit);
 }
 

@@ -49,8 +49,8 @@ class ContactNewton {
       p_.pressing.look(along_);
       if (i == most_multiplier_changes)
         throw SolveFailure(
-            "The pressure of the rigid seat did not settle in {} corrections (last change {:.1e} of it). Give the seat a "
-            "'contact.stiffness', or a larger 'contact.scale'.",
+            "The contact pressure on the rigid seat did not converge in {} corrections (last relative change {:.1e}). Set "
+            "'contact.stiffness', or increase 'contact.scale'.",
             most_multiplier_changes, change);
     }
     return statistics_;
@@ -67,7 +67,7 @@ class ContactNewton {
   void check_method() {
     if (!p_.method.approximate_inverse(u_, r_))
       throw Error(
-          "contact: 'solution-method: {{preconditioner: mixed}}' cannot meet a seat; use 'preconditioner: multigrid' or "
+          "contact: 'solution-method: {{preconditioner: mixed}}' does not support a seat; use 'preconditioner: multigrid' or "
           "'factors'.");
   }
 

@@ -126,9 +126,9 @@ void ConjugateGradients::choose_multigrid() {
   options.node_inertia = of_nodes;
   multigrid_ = std::make_unique<elastic::ElasticPreconditioner>(mesh, problem_.elastic, options);
   if (heaviness(problem_) <= heavy) add_rigid_motions(of_nodes);
-  name_ =
-      fmt::format("newton-krylov (conjugate gradients, multigrid{})",
-                  modes_ ? fmt::format(" and rigid motions of {} aggregates", modes_->n_aggregates()) : "");
+  name_ = fmt::format(
+      "newton-krylov (conjugate gradients, multigrid{})",
+      modes_ ? fmt::format(" and rigid-body modes of {} aggregates", modes_->n_aggregates()) : "");
 }
 
 /// Bending of a slender body varies too slowly for component-wise multigrid. A beam 10:1 of 80x8x8 cells
@@ -188,7 +188,7 @@ linalg::SolveStatistics ConjugateGradients::find(std::span<const double> b, std:
     return statistics;
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped?{}", e.what(),
+        "{} Is the solid fully supported, is nu below 0.5, and are the cells well shaped?{}", e.what(),
         multigrid_
             ? " If loads and supports are correct, try 'solution-method: {preconditioner: factors}', the most "
               "robust option, at the highest memory cost."

@@ -276,8 +276,8 @@ linalg::SolveStatistics MixedForm::find(std::span<const double> b, std::span<dou
     statistics = krylov_->solve(right, x, options_);
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped? If so, try "
-        "'solution-method: {{preconditioner: factors}}', the most robust option, at the highest memory cost.",
+        "{} Is the solid fully supported, is nu below 0.5, and are the cells well shaped? If so, try 'solution-method: "
+        "{{preconditioner: factors}}', the most robust option, at the highest memory cost.",
         e.what());
   }
   if (problem_.is_static()) krylov_->forget_vectors();  // what is written next needs room

@@ -20,8 +20,9 @@ linalg::SolveStatistics SolutionMethod::solve(std::span<const double> b, std::sp
     return find(b, u);
   } catch (const SolveFailure& failure) {
     if (!cure(b)) throw;
-    log::info("{} Factors of the matrix solve it from here on; 'preconditioner: factors' omits the attempt.",
-              failure.what());
+    log::info(
+        "{} From now on it is solved with factors of the matrix; 'preconditioner: factors' skips this attempt.",
+        failure.what());
     std::ranges::copy(guess, u.begin());
     return instead_->find(b, u);
   }

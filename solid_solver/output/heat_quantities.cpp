@@ -393,8 +393,8 @@ void check_heat_quantities(const Heat& heat, const std::map<std::string, SolidQu
   const mesh::Mesh& mesh = heat.conduction().mesh();
   if (heat.properties_vary())
     throw Error(
-        "quantities: the conductivity varies with the temperature; their errors are estimated where it is constant. 'couplet study "
-        "--quantities' estimates them by differences of coarser runs.");
+        "quantities: their errors are estimated only if the conductivity is constant, but it varies with the temperature. "
+        "'couplet study --quantities' estimates them from differences between coarser runs.");
   std::vector<std::string> patches;
   for (const mesh::Patch& patch : mesh.patches)
     if (!patch.bonded) patches.push_back(patch.name);

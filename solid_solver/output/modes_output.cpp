@@ -102,7 +102,7 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const modes::Eig
   const std::ptrdiff_t rigid = first - model.frequency.begin(), left = model.frequency.end() - first;
   const double error = errors.empty() ? 0 : std::ranges::max(errors);
   const std::string name =
-      fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid motions", rigid) : "");
+      fmt::format("free vibrations{}", rigid > 0 ? fmt::format(" after {} rigid-body modes", rigid) : "");
   diagnostics::set_result({name, "Hz", {first, first + std::min<std::ptrdiff_t>(5, left)}});
   diagnostics::set_errors(name, std::move(errors));
   log::info(

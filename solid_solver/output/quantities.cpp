@@ -235,8 +235,8 @@ std::vector<QuantityEstimate> estimate_quantities(const SolidBody& body, const S
                                                   const SolidState& state, SolutionMethod& method) {
   if (!body.kernel().is_symmetric())
     throw Error(
-        "quantities: their errors are estimated with 'solution-method: {face-gradient: symmetric}', the default; the matrix of the other "
-        "gradients is not symmetric. couplet study --quantities estimates them by differences of runs.");
+        "quantities: their errors are estimated with 'solution-method: {face-gradient: symmetric}', the default; the matrix of "
+        "the other gradients is not symmetric. couplet study --quantities estimates them from differences between runs.");
   const Estimates estimates(body, fields, state, method);
   std::vector<QuantityEstimate> found;
   for (const auto& [name, quantity] : body.parameters().quantities)

@@ -21,8 +21,7 @@ using Texts = std::vector<config::ExpressionText>;
 std::string problem_of_total(const config::ExpressionText& text) {
   return fv::Expression(text).uses_space()
              ? fmt::format(
-                   "'{}' depends on x, y or z, but a total load has no position; it may depend on t "
-                   "only",
+                   "'{}' depends on x, y or z, but a total load has no position; it may depend on t only",
                    text.text)
              : "";
 }
@@ -47,7 +46,8 @@ void declare_moment(config::Section& s, Texts& moment, const int& dimension) {
     config::Key key = s.value("moment", moment);
     if (dimension == 2) key.size(1);
     key.unit("N m", 1e-9, 1e12)
-        .doc("moment about 'point', one expression of t per component; in 2-D one, positive from x to y");
+        .doc(
+            "moment about 'point', one expression of t per component; in 2-D a single expression, positive from x to y");
   }
   s.check([&] { return problem_of_totals(moment); }, "moment");
 }
@@ -59,9 +59,10 @@ std::string problem_of_nothing(const TotalLoad& load) {
 }  // namespace
 
 void declare_total_force(config::Section& s, TotalLoad& load) {
-  declare_force(s, "value", load.force, true,
-                "total force on these faces, one expression of t per component; uniform force per area, in "
-                "2-D per meter of depth");
+  declare_force(
+      s, "value", load.force, true,
+      "total force on these faces, one expression of t per component, applied as a uniform force per area; in 2-D per meter of "
+      "depth");
 }
 
 void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimension) {
@@ -74,7 +75,7 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
   declare_moment(s, load.moment, dimension);
   s.choice("coupling", load.is_rigid, {{"distributing", false}, {"rigid", true}})
       .doc(
-          "distributing: the faces share the load by area and remain free to deform. rigid: their centers "
+          "distributing: the load is distributed over the faces by area, and they remain free to deform. rigid: their centers "
           "move as one rigid body (small strain, symmetric face gradient)");
   s.check([&] { return load.is_rigid ? std::string() : problem_of_nothing(load); }, "point");
 }
@@ -109,8 +110,8 @@ void declare_hydrostatic_pressure(config::Section& s, TotalLoad& load, const int
       .unit("m", 1e-9, 1e4)
       .required()
       .doc(
-          "height of the free surface against gravity, measured from the origin, of t: y of the surface for "
-          "gravity [0, -9.81]; no pressure above it");
+          "height of the free surface, an expression of t, measured from the origin against the direction of gravity: the y of "
+          "the surface for gravity [0, -9.81]; there is no pressure above it");
   s.check([&] { return problem_of_total(load.level); }, "level");
 }
 
@@ -123,8 +124,8 @@ void declare(config::Section& s, PointLoad& load, const int& dimension) {
       .unit("m", 1e-9, 1e4)
       .not_negative()
       .doc(
-          "faces with their center within this distance of 'point' share the load, as for a remote-load; 0 means "
-          "the nearest face alone takes the force");
+          "faces whose centers are within this distance of 'point' share the load, as for a remote-load; with 0, only the "
+          "nearest face takes the force");
   s.check([&] { return problem_of_nothing(load); }, "point");
   s.check(
       [&] {
@@ -165,39 +166,43 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
         for (int i = 0; i < 3; ++i)
           v.value(base::axis_letters[i], c.components[i])
               .unit("m", 1e-9, 1e4)
-              .doc("displacement along this axis, of x, y, z, t");
+              .doc("displacement along this axis, an expression of x, y, z, t");
       },
-      "instead of value: the prescribed components; the others are free. On a part of a patch this holds "
-      "its faces, but not the vertices at its edge");
+      "instead of 'value': only the prescribed components; the others are free. On a part of a patch this prescribes the "
+      "displacement of its faces, but not of the vertices at its edge");
   s.check([&] { return problem_of_components(c, dimension); }, "value");
   declare_vector(s, "traction", c.traction, "Pa", "force per area on the free components");
 }
 
 void declare_plate(config::Section& s, SolidCondition& c) {
-  s.value("plate-normal", c.normal).doc("normal of the plate, any length");
+  s.value("plate-normal", c.normal).doc("normal of the plate, a vector of any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, "Pa",
-                 "force per area on the remaining free "
-                 "components");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area on the remaining free components");
 }
 
 void declare_roller(config::Section& s, SolidCondition& c) {
-  s.value("direction", c.normal).required().doc("direction that is held, any length");
+  s.value("direction", c.normal)
+      .required()
+      .doc("direction in which the displacement is prescribed, a vector of any length");
   s.check([&c] { return c.normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "direction");
-  s.value("value", c.along).unit("m", 1e-9, 1e4).doc("displacement along this direction, of x, y, z, t");
-  declare_vector(s, "traction", c.traction, "Pa", "force per area across this direction");
+  s.value("value", c.along)
+      .unit("m", 1e-9, 1e4)
+      .doc("displacement along this direction, an expression of x, y, z, t");
+  declare_vector(s, "traction", c.traction, "Pa", "force per area perpendicular to this direction");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c) {
   s.value("stiffness", c.stiffness)
       .unit("N/m^3", 1, 1e16)
       .required()
-      .doc("force per area and displacement, of x, y, z (Winkler foundation)");
+      .doc(
+          "spring stiffness (Winkler foundation): force per area and displacement, an expression of x, y, z");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
       .doc("displacement components that the springs resist");
-  declare_vector(s, "value", c.value, "m", "displacement of the far ends of the springs, of x, y, z, t");
+  declare_vector(s, "value", c.value, "m",
+                 "displacement of the far ends of the springs, an expression of x, y, z, t");
   declare_vector(s, "traction", c.traction, "Pa", "force per area in addition to the springs");
 }
 
@@ -213,7 +218,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
     v.value("value", c.pressure)
         .unit("Pa", 1e-9, 1e11)
         .required()
-        .doc("pressure acting into the solid, of x, y, z, t");
+        .doc("pressure acting into the solid, an expression of x, y, z, t");
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c); };
   const auto roller = [&](config::Section& v) { declare_roller(v, c); };
@@ -242,12 +247,12 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   if (whole_patch) types.emplace_back("interface", Type::interface_, nothing);
   s.variant<Type>(
       "type", c.type, types,
-      "boundary condition; force: total force; remote-load: force and moment at a point, distributed by "
-      "area; bearing-load: cosine pressure of a pin on half of a cylinder; hydrostatic-pressure: of a "
-      "liquid below its level; symmetry: a plane of any orientation; frictionless: no displacement normal "
-      "to the surface, curved or not; roller: no displacement along one direction, or a given one; soft-support: no displacement along the plate's normal; hard-support: "
-      "nor along the edge; zero-normal-gradient: the displacement does not change along the normal; "
-      "interface (whole patches): the load comes from the coupler",
+      "boundary condition; force: total force; remote-load: force and moment at a point, distributed by area; bearing-load: "
+      "cosine pressure of a pin on half of a cylinder; hydrostatic-pressure: pressure of a liquid below its level; symmetry: a "
+      "plane of any orientation; frictionless: no displacement normal to the surface, curved or not; roller: no displacement "
+      "along one direction, or a given one; soft-support: no displacement along the plate's normal; hard-support: no "
+      "displacement along the plate's normal or along the edge; zero-normal-gradient: the displacement does not change along "
+      "the normal; interface (whole patches): the load comes from the coupler",
       true);
 }
 

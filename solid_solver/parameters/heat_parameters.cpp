@@ -40,17 +40,19 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
       "type", b.type,
       {{"temperature", Type::temperature,
         [&b, expression](config::Section& v) {
-          expression(v, {"value", "K", 70, 5000}, b.value, "temperature, of x, y, z, t");
+          expression(v, {"value", "K", 70, 5000}, b.value, "temperature, an expression of x, y, z, t");
         }},
        {"flux", Type::flux,
         [&b, expression](config::Section& v) {
-          expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value, "heat flux into the solid, of x, y, z, t");
+          expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value,
+                     "heat flux into the solid, an expression of x, y, z, t");
         }},
        {"convection", Type::convection,
         [&b, expression](config::Section& v) {
           expression(v, {"coefficient", "W/(m^2 K)", 1e-3, 1e7}, b.coefficient,
-                     "heat transfer coefficient, of x, y, z, t", 0);
-          expression(v, {"ambient", "K", 70, 5000}, b.ambient, "temperature of the fluid, of x, y, z, t");
+                     "heat transfer coefficient, an expression of x, y, z, t", 0);
+          expression(v, {"ambient", "K", 70, 5000}, b.ambient,
+                     "temperature of the fluid, an expression of x, y, z, t");
         }},
        {"adiabatic", Type::adiabatic, [](config::Section&) {}},
        {"symmetry", Type::symmetry, [](config::Section&) {}}},
@@ -84,19 +86,22 @@ void declare(config::Section& s, HeatParameters& h) {
   s.choice(
        "time-scheme", h.scheme,
        {{"euler", Scheme::euler}, {"three-point", Scheme::three_point}, {"trapezoidal", Scheme::trapezoidal}})
-      .doc("euler: first order; three-point (backward, variable steps), trapezoidal: second order");
+      .doc(
+          "euler is first order; three-point (backward differences with variable steps) and trapezoidal are second order");
   s.value("initial-temperature", h.initial_temperature)
       .unit("K", 70, 5000)
-      .doc("initial temperature, of x, y, z");
-  s.value("source", h.source).unit("W/m^3", 1e-6, 1e14).doc("heat source in the solid, of x, y, z, t");
+      .doc("initial temperature, an expression of x, y, z");
+  s.value("source", h.source)
+      .unit("W/m^3", 1e-6, 1e14)
+      .doc("heat source in the solid, an expression of x, y, z, t");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
-      "patch", "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
+      "patch", "patches that are not adiabatic; mechanical symmetry planes are also thermal symmetry planes");
   s.value("tolerance", h.tolerance)
       .range(1e-14, 1e-2)
       .doc(
-          "convergence limit of the iteration over temperature-dependent properties: change of the "
-          "temperature over its range");
+          "convergence limit of the iteration over temperature-dependent properties: change of the temperature relative to its "
+          "range");
   s.value("max-iterations", h.max_iterations)
       .range(1, 1000)
       .doc("maximum number of these iterations; beyond it the step fails");
@@ -112,7 +117,9 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
       "heat conduction; each step solves for the temperature before the displacement");
-  s.value("temperature", p.temperature).unit("K", 70, 5000).doc("prescribed temperature, of x, y, z, t");
+  s.value("temperature", p.temperature)
+      .unit("K", 70, 5000)
+      .doc("prescribed temperature, an expression of x, y, z, t");
   s.optional_section<ThermalExpansion>(
       "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
       "thermal strain; requires 'heat' or 'temperature', and 'expansion' of the material");
@@ -120,7 +127,7 @@ void declare_heat(config::Section& s, SolidParameters& p) {
       "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
       "data that patches of type 'interface' receive from the coupler; default: forces");
   s.value("thermoelastic-coupling", p.thermoelastic_coupling)
-      .doc("cooling by stretching: heat of the strain rate, thesis (2.27), lagged by one step");
+      .doc("thermoelastic cooling by stretching: heat of the strain rate, thesis (2.27), lagged by one step");
 }
 
 }  // namespace couplet::solid

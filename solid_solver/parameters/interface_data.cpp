@@ -71,7 +71,7 @@ double FaceInterpolation::value(std::size_t point, std::span<const double> faces
 void declare(config::Section& s, InterfaceData& d) {
   using Load = InterfaceData::Load;
   s.choice("load", d.load, {{"forces", Load::forces}, {"pressure", Load::pressure}})
-      .doc("data received at the faces: pressure-force and viscous-force, or one pressure");
+      .doc("data received at the faces: pressure-force and viscous-force, or a single pressure");
   s.value("temperature", d.temperature)
       .doc(
           "receive a temperature at the faces; the solid uses it along the interface, linear between the "

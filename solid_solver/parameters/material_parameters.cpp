@@ -162,7 +162,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   s.value("yield-strength", m.yield_strength)
       .unit("Pa", 1000, 1e11)
       .positive()
-      .doc("the run reports where the equivalent stress reaches it; no other effect");
+      .doc("the run reports where the equivalent stress reaches this value; the key has no other effect");
   if (is_elastic) declare_law(s, m);
   declare(s, m.heat);
 }

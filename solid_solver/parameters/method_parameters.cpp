@@ -28,10 +28,10 @@ void declare_equations(config::Section& s, MethodParameters& m) {
             {"thesis", FaceGradient::thesis},
             {"symmetric", FaceGradient::symmetric}})
       .doc(
-          "displacement gradient at the faces. symmetric: derived from an energy, free of bending locking "
-          "and of spurious growth on any mesh, solved by conjugate gradients. thesis: of the source, locks "
-          "in bending with few or elongated cells, solved by block-coupled or segregated. auto: symmetric, but thesis with "
-          "'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
+          "displacement gradient at the faces. symmetric: derived from an energy, free of bending locking and of spurious "
+          "growth on any mesh, solved by conjugate gradients. thesis: that of the thesis, which locks in bending with few or "
+          "elongated cells; solved by block-coupled or segregated. auto: symmetric, but thesis with 'zero-normal-gradient', "
+          "'type: segregated' or 'block-coupled'");
 }
 
 void declare_volume_strain(config::Section& s, MethodParameters& m) {
@@ -44,10 +44,10 @@ void declare_volume_strain(config::Section& s, MethodParameters& m) {
             {"cells", VolumeStrain::cells},
             {"shared", VolumeStrain::shared}})
       .doc(
-          "for face-gradient symmetric. cells: one per cell, free of volumetric locking as nu approaches "
-          "0.5. faces: one per face. shared: a tenth of the bulk modulus, at most a third of the shear "
-          "modulus, on the faces, the rest on the cells: best in plane strain and for plates, too soft for "
-          "3-D bars with few cells across. auto: cells from nu = 0.4, otherwise faces");
+          "where the volume strain is evaluated, for face-gradient symmetric. cells: one per cell, free of volumetric locking "
+          "as nu approaches 0.5. faces: one per face. shared: a tenth of the bulk modulus, but at most a third of the shear "
+          "modulus, acts on the faces and the rest on the cells, which is best in plane strain and for plates, but too soft "
+          "for 3-D bars with few cells across. auto: cells from nu = 0.4, otherwise faces");
   s.check(
       [&m] {
         const bool asked = m.volume_strain == VolumeStrain::cells || m.volume_strain == VolumeStrain::shared;
@@ -78,13 +78,12 @@ void declare_linear_solver(config::Section& s, MethodParameters& m) {
             {"factors", Preconditioner::factors},
             {"mixed", Preconditioner::mixed}})
       .doc(
-          "for newton-krylov. multigrid: compact component-wise operator and rigid motions of aggregates. "
-          "factors: of the matrix, mass included, reused for all steps "
-          "of one size. mixed: for one volume strain per cell, with the mean "
-          "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3. "
-          "auto: factors where the run makes so many steps that they pay, for several materials and from "
-          "nu = 0.49 where they are set up in seconds; otherwise mixed from nu = 0.49, otherwise multigrid; an "
-          "iteration that auto chose and that does not converge is replaced by factors if they fit into memory");
+          "for newton-krylov. multigrid: multigrid of a compact component-wise operator, with the rigid-body modes of "
+          "aggregates. factors: factors of the matrix (including the mass), reused for all steps of the same size. mixed: for "
+          "one volume strain per cell, with the mean stresses as additional unknowns, so that nu close to 0.5 takes hardly "
+          "more iterations than 0.3. auto: factors where the run makes enough steps for them to pay off, and for several "
+          "materials and from nu = 0.49 where they are computed in seconds; otherwise mixed from nu = 0.49, otherwise "
+          "multigrid. If an iteration that auto chose does not converge, factors replace it if they fit into memory");
 }
 
 void declare_iteration(config::Section& s, MethodParameters& m) {
@@ -95,12 +94,14 @@ void declare_iteration(config::Section& s, MethodParameters& m) {
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
       .doc("convergence acceleration of the outer iterations, for segregated");
   s.choice("predictor", m.predictor, {{"none", Predictor::none}, {"euler", Predictor::euler}})
-      .doc("initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73)");
+      .doc(
+          "initial guess of a dynamic step: the last displacement, or the last displacement extrapolated with the velocity "
+          "(2.73)");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
-          "relative residual tolerance; for newton-krylov in steps so small that inertia dominates stiffness, relative to "
-          "its elastic part");
+          "relative residual tolerance; for newton-krylov in steps so small that inertia dominates stiffness, it is relative "
+          "to the elastic part");
   s.value("max-iterations", m.max_iterations)
       .range(1, 1e6)
       .doc(
@@ -152,9 +153,9 @@ void declare(config::Section& s, LoadStepping& l) {
   using Type = LoadStepping::Type;
   s.choice("type", l.type, {{"load", Type::load}, {"arc-length", Type::arc_length}})
       .doc(
-          "load: the steps follow the loads as functions of t. arc-length: a step is a length along the load path, "
-          "which passes limit points of load (snap-through) and of displacement; loads are those at load factor 1, "
-          "constant in time");
+          "load: the steps follow the loads as functions of t. arc-length: a step is a length along the load path, which "
+          "passes limit points of load (snap-through) and of displacement; the given loads are those at load factor 1 and must "
+          "be constant in time");
   s.value("first-load-factor", l.first_load_factor)
       .range(1e-6, 1)
       .doc("for arc-length: load factor of the first step; sets the length of the later ones");

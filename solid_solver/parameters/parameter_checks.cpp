@@ -133,15 +133,15 @@ void check_quantities(config::Section& s, SolidParameters& p) {
             return "heat conduction alone has the quantities temperature (at a 'point') and heat (through a 'patch')";
           return p.heat && p.heat->analysis == HeatParameters::Analysis::steady
                      ? ""
-                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'couplet study --quantities' estimates "
-                       "those of any run, by differences of coarser ones";
+                     : "the errors of 'quantities' are estimated with 'heat: {analysis: steady}'; 'couplet study --quantities' "
+                       "estimates those of any run from differences between coarser runs";
         }
         if (std::ranges::any_of(p.quantities, is_of_heat))
-          return "temperature and heat are quantities of 'analysis: thermal'; 'couplet study --quantities' estimates those of any run, by "
-                 "differences of coarser ones";
+          return "temperature and heat are quantities of 'analysis: thermal'; 'couplet study --quantities' estimates those of "
+                 "any run from differences between coarser runs";
         if (p.analysis != Analysis::static_ || has_finite_strain(p))
-          return "the errors of 'quantities' are estimated in a linear static analysis; 'couplet study --quantities' estimates those of "
-                 "any run, by differences of coarser ones";
+          return "the errors of 'quantities' are estimated in a linear static analysis; 'couplet study --quantities' estimates "
+                 "those of any run from differences between coarser runs";
         if (is_axisymmetric(p) || has_rigid_patch(p) || p.contact)
           return "'quantities' support neither a body of revolution, nor a patch that moves as a rigid body, nor 'contact'";
         return symmetric_suits(p) ? "" : "'quantities' require 'face-gradient: symmetric', the default";
@@ -152,17 +152,17 @@ void check_quantities(config::Section& s, SolidParameters& p) {
 void check_contact(config::Section& s, SolidParameters& p) {
   if (!p.contact) return;
   const auto& d = p.contact->direction;
-  refuse(s, "contact", p.analysis == Analysis::thermal, "a thermal analysis moves nothing; remove it");
+  refuse(s, "contact", p.analysis == Analysis::thermal, "a thermal analysis computes no motion; remove it");
   refuse(s, "contact", p.dimension == 2 && d.size() == 3 && d[2] != 0,
          "its 'direction' must lie in the plane of a 2-dimensional case: [x, y, 0]");
   refuse(
       s, "contact",
       p.analysis == Analysis::dynamic && p.contact->rule == contact::ContactRule::conserving &&
           scheme_of(p).type != time::TimeScheme::trapezoidal,
-      "'rule: conserving' keeps the energy with 'time-scheme: {type: trapezoidal}' only (at finite strain with "
+      "'rule: conserving' conserves the energy only with 'time-scheme: {type: trapezoidal}' (at finite strain with "
       "'energy-momentum: true'); use that or 'rule: midpoint'");
   refuse(s, "plane", is_axisymmetric(p),
-         "a body of revolution cannot meet a seat; model it in 3-D, or remove 'contact'");
+         "a body of revolution does not support contact with a seat; model it in 3-D, or remove 'contact'");
   refuse(
       s, "boundaries", has_rigid_patch(p),
       "a remote-load with 'coupling: rigid' cannot be combined with 'contact'; use 'coupling: distributing'");
@@ -171,7 +171,7 @@ void check_contact(config::Section& s, SolidParameters& p) {
   refuse(s, "solution-method", !derives_from_energy(p),
          "'contact' requires 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
          "'preconditioner: mixed' and 'zero-normal-gradient'");
-  refuse(s, "output", p.output.buckling > 0, "'buckling' does not include a seat; remove it, or 'contact'");
+  refuse(s, "output", p.output.buckling > 0, "'buckling' does not support a seat; remove it, or 'contact'");
 }
 
 namespace {
@@ -291,7 +291,7 @@ void check_axisymmetric(config::Section& s, SolidParameters& p) {
          "'plane: axisymmetric' does not conduct heat; give 'temperature' as an expression, or model a wedge "
          "in 3-D");
   refuse(s, "interface", p.interface_data.has_value(),
-         "'plane: axisymmetric' does not couple; model a wedge in 3-D");
+         "'plane: axisymmetric' does not support coupling; model a wedge in 3-D");
   refuse(s, "output", has_modes(p) || p.output.buckling > 0,
          "'plane: axisymmetric' supports none of 'spectrum', 'modes' and 'buckling'; model the body in 3-D");
   refuse(s, material_key(p), has_orthotropic(p),
@@ -328,9 +328,10 @@ void check_finite_sheet(config::Section& s, SolidParameters& p) {
   refuse(s, "plane", is_updated_lagrangian(p),
          "'solution-method: {type: segregated}' at finite strain supports plane strain only; use 'type: "
          "newton-krylov' (or 'auto')");
-  refuse(s, "solution-method", p.method.volume_strain == Method::VolumeStrain::cells,
-         "plane stress at finite strain has the volume strain of the faces, which does not lock there; use "
-         "'volume-strain: faces' (or 'auto')");
+  refuse(
+      s, "solution-method", p.method.volume_strain == Method::VolumeStrain::cells,
+      "plane stress at finite strain requires the volume strain of the faces, which does not lock there; use 'volume-strain: "
+      "faces' (or 'auto')");
   refuse(s, "energy-momentum", p.energy_momentum,
          "its stress supports plane strain only; model the sheet in 3-D, or remove it");
   refuse(
@@ -361,8 +362,9 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "by itself from nu = 0.48");
   check_finite_sheet(s, p);
   const bool expands = p.expansion.has_value();
-  refuse(s, "thermoelastic-coupling", p.thermoelastic_coupling,
-         "finite strain has thermal strain, but not the heat of deformation; use small-strain, or remove it");
+  refuse(
+      s, "thermoelastic-coupling", p.thermoelastic_coupling,
+      "finite strain supports thermal strain, but not the heat of deformation; use small-strain, or remove it");
   refuse(s, "energy-momentum", expands && p.energy_momentum,
          "its stress conserves energy at constant temperature only; remove it, or 'thermal-expansion'");
   refuse(s, "output", expands && p.output.energies,

@@ -58,19 +58,18 @@ std::string wrong_quantity(const SolidQuantity& q, int dimension) {
 void declare(config::Section& s, SolidProbe& p) {
   s.value("fields", p.fields)
       .doc(
-          "fields to record (stress and strain at a joint of materials: of the side where the equivalent value is "
-          "larger): displacement, velocity, acceleration, stress, equivalent-stress, "
-          "principal-stress, strain, temperature");
+          "fields to record: displacement, velocity, acceleration, stress, equivalent-stress, principal-stress, strain, "
+          "temperature. Where materials meet, stress and strain are those of the side with the larger equivalent value");
   s.check([&] { return unknown_field(p.fields); }, "fields");
 }
 
 void declare(config::Section& s, SolidQuantity& q, int dimension) {
   s.value("point", q.point)
       .unit("m", 1e-9, 1e4)
-      .doc("position in the undeformed solid; of an equivalent stress none: where it is largest");
-  s.value("patch", q.patch).doc("of a heat flow: the patch through which heat enters the solid");
+      .doc("position in the undeformed solid; an equivalent stress without 'point' is the largest one");
+  s.value("patch", q.patch).doc("for a heat flow: the patch through which heat enters the solid");
   s.value("field", q.field)
-      .doc("displacement, stress or equivalent-stress; of 'analysis: thermal' temperature or heat");
+      .doc("displacement, stress or equivalent-stress; with 'analysis: thermal' temperature or heat");
   s.value("component", q.component).doc("x, y or z of a displacement; xx, yy, zz, xy, yz or xz of a stress");
   s.check([&q, dimension] { return wrong_quantity(q, dimension); }, "field");
 }
@@ -85,11 +84,12 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("acceleration", o.acceleration).doc("write the acceleration of a dynamic analysis");
   s.value("surfaces", o.surfaces)
       .doc(
-          "patches, or [all]: surface-<patch>.xdmf with displacement, stress and traction, temperature and heat flux of a "
-          "case that has them, at each output");
+          "patches, or [all], for which surface-<patch>.xdmf is written at each output: displacement, stress and traction, and "
+          "temperature and heat flux if the case has them");
   s.value("moments", o.moments)
       .doc(
-          "reactions.csv also has the moment of each patch's force about the origin, of large strain that of the deformed body");
+          "also write to reactions.csv the moment of each patch's force about the origin; at finite strain that of the "
+          "deformed body");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
   s.value("spectrum", o.spectrum)
       .doc(
@@ -98,17 +98,17 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("modes", o.modes)
       .range(0, 1000)
       .doc(
-          "number of lowest free vibrations, 0: none; of the unloaded body at the start of a dynamic analysis, or of the loaded "
-          "equilibrium at the end of a linear static one, whose stress and loads stiffen or soften the body; written to modes.csv "
-          "and, in 3-D, to modes.h5, which plate_modal reads; requires 'face-gradient: symmetric'");
+          "number of lowest free vibrations to compute; 0 means none. They are those of the unloaded body at the start of a "
+          "dynamic analysis, or of the loaded equilibrium at the end of a linear static one, whose stress and loads stiffen or "
+          "soften the body. They are written to modes.csv and, in 3-D, to modes.h5, which plate_modal reads; requires "
+          "'face-gradient: symmetric'");
   s.value("buckling", o.buckling)
       .range(0, 1000)
       .doc(
-          "number of lowest load factors at which the equilibrium of a linear static analysis buckles "
-          "(face-gradient: symmetric), computed at the end: buckling.csv and the shapes in buckling.xdmf; "
-          "pressures follow the surface; they and body forces are those of the place to which the body moves; other "
-          "loads keep their direction; 0 means none; with 'analysis: "
-          "buckling' 4");
+          "number of lowest load factors at which the equilibrium of a linear static analysis buckles; 0 means none; default "
+          "with 'analysis: buckling': 4. They are computed at the end and written to buckling.csv, the mode shapes to "
+          "buckling.xdmf; requires 'face-gradient: symmetric'. Pressures follow the surface; they and body forces are "
+          "evaluated at the place to which the body moves; other loads keep their direction");
 }
 
 namespace {
@@ -118,7 +118,8 @@ void declare_scene(config::Section& s, SolidParameters& p) {
   using Plane = SolidParameters::Plane;
   s.value("mesh", p.mesh)
       .required()
-      .doc("mesh file, .msh, .geo, .inp or a cut mesh, .h5 (others: docs/formats.md), relative to the YAML");
+      .doc(
+          "mesh file: .msh, .geo, .inp or a cut mesh, .h5 (other formats: docs/formats.md), relative to the YAML file");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
@@ -129,12 +130,13 @@ void declare_scene(config::Section& s, SolidParameters& p) {
        "touching-faces", p.touching_faces,
        {{"refused", TouchingFaces::refused}, {"tie", TouchingFaces::tie}, {"apart", TouchingFaces::apart}})
       .doc(
-          "parts of the mesh that touch without sharing points: refused unless the faces on both sides are patches of their "
-          "own with a load or support, with `heat` also a thermal one; tie joins faces in groups of the mesh that have the same corners (within 1e-4 of their "
-          "size), and refuses conditions on them; apart leaves them, as those of a crack");
+          "treatment of parts of the mesh that touch without sharing points. refused: an error, unless the faces on both sides "
+          "are separate patches with a load or support (with `heat` also with a thermal condition). tie: joins faces that are "
+          "in groups of the mesh and have the same corners (within 1e-4 of their size), and refuses conditions on them. apart: "
+          "keeps them separate, like the faces of a crack");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("values, such as {n: 8}, for names that the .geo defines with DefineConstant");
-  s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
+  s.value("dimension", p.dimension).range(2, 3).doc("2 (cells in the plane z = 0, with unit depth) or 3");
   s.choice("plane", p.plane,
            {{"strain", Plane::strain}, {"stress", Plane::stress}, {"axisymmetric", Plane::axisymmetric}})
       .doc(
@@ -152,9 +154,9 @@ void declare_scene(config::Section& s, SolidParameters& p) {
             {"modal", Analysis::modal},
             {"buckling", Analysis::buckling}})
       .doc(
-          "dynamic: with inertia; static: without; thermal: heat conduction only; modal: the lowest free vibrations at the start, 10 or "
-          "as many as 'output.modes', for which one step without loads is enough; buckling: static, with the lowest factors by which "
-          "the loads buckle the body, 4 or as many as 'output.buckling'");
+          "dynamic: with inertia; static: without; thermal: heat conduction only; modal: computes the lowest free vibrations "
+          "at the start, 10 or as many as 'output.modes' says, for which one step without loads is enough; buckling: static, "
+          "and computes the lowest load factors at which the body buckles, 4 or as many as 'output.buckling' says");
   if (p.analysis == Analysis::modal) {
     p.analysis = Analysis::dynamic;
     p.output.modes = 10;
@@ -185,7 +187,7 @@ void declare_materials(config::Section& s, SolidParameters& p) {
   s.map<ZoneMaterial>(
       "materials", p.materials,
       [is_elastic](config::Section& m, ZoneMaterial& v) { declare(m, v, is_elastic); }, "material",
-      "instead of material: several, each with its zones of the mesh; bonded where they meet");
+      "instead of 'material': several materials, each with its zones of the mesh; they are bonded where they meet");
   s.check(
       [&p] {
         return p.material_given.has_value() == p.materials.empty()
@@ -206,7 +208,7 @@ void declare_loads(config::Section& s, SolidParameters& p) {
   s.optional_section<contact::ContactParameters>(
       "contact", p.contact,
       [](config::Section& c, contact::ContactParameters& v) { contact::declare(c, v, "z, in 2-D y"); },
-      "a rigid seat without friction that free, loaded and interface faces may meet");
+      "a rigid seat without friction, which free, loaded and interface faces may touch");
   s.value("body-force", p.body_force)
       .unit("N/m^3", 1e-6, 1e11)
       .doc("force per volume, one expression of x, y, z, t per component");
@@ -234,7 +236,8 @@ void declare_output(config::Section& s, SolidParameters& p) {
   s.map<SolidQuantity>(
       "quantities", p.quantities, [&p](config::Section& q, SolidQuantity& v) { declare(q, v, p.dimension); },
       "quantity",
-      "numbers whose errors a linear static run or a steady one of heat estimates at its end, each by one more solve with the same matrix");
+      "quantities of interest whose errors are estimated at the end of a linear static or steady heat-conduction run, each by "
+      "one additional solve with the same matrix");
   s.section(
       "output",
       [&](config::Section& o) {

@@ -346,7 +346,7 @@ double Heat::stored_heat() const {
 
 HeatState Heat::answer(std::vector<double> sources, std::vector<double> known) const {
   if (!is_steady() || properties_vary_ || state_.steps == 0)
-    throw Error("Only a steady temperature that was solved for, with constant conductivity, has a dual.");
+    throw Error("Only a steady temperature that was computed with constant conductivity has a dual problem.");
   HeatState answer;
   answer.known = std::move(known);
   conduction_.subtract_known({conductivity_, transfer_, capacity_, 1}, answer.known, sources);

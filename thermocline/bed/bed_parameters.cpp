@@ -17,15 +17,16 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
        "conduction", p.conduction,
        {{"stagnant", Conduction::stagnant}, {"wakao", Conduction::wakao}, {"constant", Conduction::constant}})
       .doc(
-          "axial conduction: the bed at rest (Zehner and Schluender; in a gas with radiation between the "
-          "grains) + 0.5 Re Pr k; 0.7 eps k + 0.5 Re Pr k, the fluid alone, as in the thesis; or given");
+          "axial conduction. stagnant: that of the bed at rest (Zehner and Schluender; in a gas with radiation between the "
+          "grains) + 0.5 Re Pr k. wakao: 0.7 eps k + 0.5 Re Pr k, that of the fluid alone, as in the thesis. constant: given "
+          "by 'conductivity'");
   s.value("conductivity", p.conductivity)
       .unit("W/(m K)", 1e-3, 1e4)
       .not_negative()
-      .doc("conductivity, with conduction: constant");
+      .doc("axial conductivity for 'conduction: constant'");
   as_film(s.value("film-coefficient", p.film_coefficient))
       .not_negative()
-      .doc("film between fluid and grains; 0 means Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
+      .doc("heat transfer coefficient between fluid and grains; 0 means Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
 }
 
 std::string problem_of_profile(const BedParameters& p) {
@@ -36,7 +37,7 @@ std::string problem_of_profile(const BedParameters& p) {
 
 void declare_layer(config::Section& s, BedLayer& l) {
   as_length(s.value("height", l.height)).positive().required().doc("height");
-  s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of fluid; 1 if no filler");
+  s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of fluid; 1 without filler");
   s.value("diameter", l.diameter)
       .unit("m", 1e-4, 1)
       .positive()
@@ -109,17 +110,16 @@ void declare(config::Section& section, BedParameters& p) {
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})
       .doc(
-          "upwind: explicit, first order, as in the thesis. tvd: explicit, second order. implicit: "
-          "upwind, any step");
+          "upwind: explicit, first order, as in the thesis. tvd: explicit, second order. implicit: upwind, any step");
   section.value("courant", p.courant)
       .range(1e-4, 0.95)
       .doc(
-          "step of the bed over the time that the fluid takes through the cell with the least fluid; "
-          "tvd: at most 0.5");
+          "ratio of the time step of the bed to the time that the fluid takes to cross the cell with the least fluid; with tvd "
+          "at most 0.5");
   section.value("conducting-inlet", p.conducting_inlet)
-      .doc("heat conduction through the inlet's face as well");
+      .doc("true: heat is conducted through the face of the inlet as well");
   section.value("mix-inversions", p.mix_inversions)
-      .doc("fluid that is colder than the fluid below it is mixed with it");
+      .doc("true: fluid that is colder than the fluid below it is mixed with that fluid");
   section.section(
       "closures", [&p](config::Section& s) { declare_closures(s, p.closures); }, "transfer coefficients");
   declare_start(section, p);

@@ -24,13 +24,14 @@ class ResolvedGrains final : public TankDiagnostic {
   void look(diagnostics::Report& report) override {
     if (bed().shells() > 1 || !(seen_->flow > 0)) return;
     const auto [biot, share] = largest_biot();
-    add(report, {.effect = "resolved grains",
-                 .number = biot,
-                 .what = fmt::format(
-                     "Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
-                     biot, biot / 5),
-                 .advice = "set 'bed.shells': five resolve the grains",
-                 .share = share});
+    add(report,
+        {.effect = "resolved grains",
+         .number = biot,
+         .what = fmt::format(
+             "Biot number of the grains = {:.2g}: their internal thermal resistance is {:.2g} times that of the film",
+             biot, biot / 5),
+         .advice = "set 'bed.shells'; five shells resolve the grains",
+         .share = share});
     report.position.push_back({"Biot number of the grains", biot, 20, "tank-biot"});
   }
   void conclude(diagnostics::Report& report) override {
@@ -54,12 +55,14 @@ class ResolvedGrains final : public TankDiagnostic {
         "closures: Reynolds number of the layers at the largest flow, from the bottom up: {}", layers));
     if (!is_outside || view_.parameters().bed.closures.film_coefficient > 0) return;
     const double share = std::sqrt(spread);
-    add(report, {.effect = "range of the film correlation",
-                 .number = share,
-                 .what = fmt::format(
-                     "Reynolds numbers {} of the layers; the correlation was fitted from 15 to 8500", layers),
-                 .advice = "give 'bed.closures.film-coefficient'",
-                 .share = share});
+    add(report,
+        {.effect = "range of the film correlation",
+         .number = share,
+         .what = fmt::format(
+             "the Reynolds numbers of the layers are {}, but the correlation was fitted from 15 to 8500",
+             layers),
+         .advice = "give 'bed.closures.film-coefficient'",
+         .share = share});
   }
 
  private:
@@ -147,11 +150,12 @@ class StillBed final : public TankDiagnostic {
     const auto [cold, hot] = range_to_come();
     const double share = std::min(1., 2 * std::sqrt(std::max(0., squares) / height)) *
                          (seen_->hottest - seen_->coldest) / (hot - cold);
-    add(report, {.effect = effect,
-                 .number = share,
-                 .what = fmt::format("up to {:.2g} W/(m K) at {:.0f} degC", largest, celsius(mean)),
-                 .advice = advice,
-                 .share = share});
+    add(report,
+        {.effect = effect,
+         .number = share,
+         .what = fmt::format("it contributes up to {:.2g} W/(m K) at {:.0f} degC", largest, celsius(mean)),
+         .advice = advice,
+         .share = share});
   }
 };
 
@@ -171,8 +175,8 @@ class Inversions final : public TankDiagnostic {
         {.effect = "mixing of inverted fluid",
          .number = share,
          .what = fmt::format(
-             "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the "
-             "run's range",
+             "fluid {:.3g} K colder than the fluid below it at t = {:.6g} s, z = {:.3f} m: {:.2g} of the temperature range of "
+             "the run",
              worst_.depth, worst_.time, worst_.z, share),
          .advice = "it would sink: set 'bed.mix-inversions: true', or check the signs of the mass flows "
                    "(upward above 0) and the inlet temperatures",
@@ -200,13 +204,14 @@ class Pumping final : public TankDiagnostic {
       if (run.layer.porosity < 1)
         loss += run.layer.height * ergun(run.layer, f.viscosity(mean), seen_->flow / bed().area()) / density;
     const double share = loss / (density * f.specific_heat * (hot - cold));
-    add(report, {.effect = "pressure loss of the bed",
-                 .number = share,
-                 .what = fmt::format(
-                     "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
-                     1e-3 * loss, share),
-                 .advice = "add 'pump: {}', or check flow and grains: no real store is driven this hard",
-                 .share = share});
+    add(report,
+        {.effect = "pressure loss of the bed",
+         .number = share,
+         .what =
+             fmt::format("pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
+                         1e-3 * loss, share),
+         .advice = "add 'pump: {}', or check flow and grains: no real store has such a large pressure loss",
+         .share = share});
   }
 };
 
@@ -220,13 +225,15 @@ class IdealGas final : public TankDiagnostic {
     if (hot <= cold + 1) return;
     const double mean = air_heat_between(cold, hot) / (hot - cold),
                  error = std::abs(mean / view_.fluid().specific_heat - 1);
-    add(report, {.effect = "specific heat of a gas by its temperature",
-                 .number = error,
-                 .what = fmt::format("from the coldest to the hottest fluid of the run, air has {:.0f} "
-                                     "J/(kg K), a difference of {:.2g} from the constant",
-                                     mean, error),
-                 .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
-                 .share = std::min(error, 1.)});  // of another gas
+    add(report,
+        {.effect = "specific heat of a gas by its temperature",
+         .number = error,
+         .what = fmt::format(
+             "from the coldest to the hottest fluid of the run, air has {:.0f} J/(kg K), a relative difference of {:.2g} from "
+             "the constant",
+             mean, error),
+         .advice = fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", mean),
+         .share = std::min(error, 1.)});  // of another gas
   }
 
  private:
@@ -245,8 +252,8 @@ class IdealGas final : public TankDiagnostic {
          .what =
              fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow", mach),
          .advice =
-             "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a "
-             "wider bed or a higher pressure",
+             "the flow is compressible, so that neither the pressure loss nor the film coefficients are valid: use less flow, "
+             "a wider bed or a higher pressure",
          .share = 0.5 * mach * mach});
   }
 };

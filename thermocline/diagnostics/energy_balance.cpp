@@ -21,8 +21,7 @@ class HeatBalance final : public TankDiagnostic {
           "energy: no heat moved; energy balance error: bed {:.1e} J, tank {:.1e} J", of_bed, of_tank));
     else
       report.sentences.push_back(fmt::format(
-          "energy: {:.4g} MWh moved, {:.4g} MWh lost; energy balance error / heat moved: bed {:.1e}, tank "
-          "{:.1e}",
+          "energy: {:.4g} MWh moved, {:.4g} MWh lost; energy balance error / heat moved: bed {:.1e}, tank {:.1e}",
           turnover / megawatt_hour, m.ledger().losses() / megawatt_hour, of_bed / turnover,
           of_tank / turnover));
     std::string steps = fmt::format("bed: {} steps of {} cells", bed().steps(), bed().grid().size());

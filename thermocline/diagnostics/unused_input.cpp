@@ -62,9 +62,8 @@ class UnusedInput final : public TankDiagnostic {
         limits += fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*row.stop_below));
       add(report, "given-without-effect", std::to_string(i),
           fmt::format(
-              "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond "
-              "that whenever it started. Are the sign of the flow (upward, out of the top, is above 0) and the "
-              "bed's initial-temperature correct?",
+              "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever it started. "
+              "Are the sign of the flow (upward, out of the top, is above 0) and the bed's initial-temperature correct?",
               i, limits, row.mass_flow > 0 ? "top" : "bottom"));
     }
   }
@@ -76,10 +75,9 @@ class UnusedInput final : public TankDiagnostic {
     const PlantParameters& p = flow.plant;
     add(report, "given-without-effect", "plant",
         fmt::format(
-            "the plant moved no heat: up to {:g} h the sun brought {:.3g} kWh/m^2. The bottom of the bed is at {:.1f} "
-            "degC (charging starts at {:.1f} degC or below, with more sun than the block uses), its top at {:.1f} degC "
-            "(discharging starts at {:.1f} degC or above). Check 'ambient', the hours of the run and "
-            "'bed.initial-temperature'",
+            "the plant moved no heat: up to {:g} h the sun brought {:.3g} kWh/m^2. The bottom of the bed is at {:.1f} degC "
+            "(charging starts at {:.1f} degC or below, with more sun than the block uses), its top at {:.1f} degC (discharging "
+            "starts at {:.1f} degC or above). Check 'ambient', the hours of the run and 'bed.initial-temperature'",
             view_.time() / seconds_an_hour, view_.weather.irradiation(0, view_.time()) / 3.6e6,
             celsius(bed().bottom()), celsius(p.cold + p.restart), celsius(bed().top()),
             celsius(p.hot - p.restart)));

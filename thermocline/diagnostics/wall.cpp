@@ -38,14 +38,14 @@ class WallStrength final : public TankDiagnostic {
          .id = "yielding",
          .number = share,
          .what = fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", share),
-         .advice = "the wall would yield: its stress and that of the grains are those of an elastic wall",
+         .advice = "the wall would yield, but its stress and that of the grains are those of an elastic wall",
          .share = std::clamp(share - 1, 0., 1.)});  // of the temperatures it changes nothing
     if (share_.shell > 0)
       add(report,
           {.effect = "bending of the wall",
            .number = share_.shell - share_.rings,
            .what = fmt::format(
-               "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
+               "max equivalent stress / yield strength of the wall: {:.3g} modeled as rings, {:.3g} modeled as a shell",
                share_.rings, share_.shell),
            .advice = "reduce the factors of safety accordingly, or compute the wall as a solid "
                      "('external-wall')",

@@ -264,8 +264,8 @@ void declare(config::Section& section, MediumInput& p) {
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
         .doc(
-            "the density falls with temperature, in the heat of the pores and in the pressure on the "
-            "wall; otherwise it is the constant of thesis table 5.1");
+            "true: the density decreases with temperature in the heat of the pores and in the pressure on the wall. false: it "
+            "is the constant of thesis table 5.1");
   };
   const auto gas = [&p](config::Section& s) {
     s.value("pressure", p.pressure)
@@ -276,14 +276,13 @@ void declare(config::Section& section, MediumInput& p) {
         .unit("K")
         .range(150, 1500)
         .doc(
-            "temperature of the density used for the heat in the pores; the pressure loss uses the "
-            "actual temperature");
+            "temperature of the density used for the heat in the pores; the pressure loss uses the actual temperature");
     s.value("specific-heat", p.air_specific_heat)
         .unit("J/(kg K)")
         .range(900, 1400)
         .doc(
-            "constant; the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 "
-            "degC); the run judges it");
+            "constant; the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 degC); the run assesses "
+            "this approximation");
   };
   section.variant<Type>("type", p.type,
                         {{"solar-salt", Type::solar_salt, known},

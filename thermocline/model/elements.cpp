@@ -224,8 +224,7 @@ void declare(config::Section& s, GroundElementParameters& p) {
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
   declare_surroundings(s, p.initial_temperature, p.ambient,
-                       "temperature of the tank's bottom; the ground "
-                       "starts steady");
+                       "temperature of the tank's bottom, with which the ground starts in a steady state");
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
@@ -235,8 +234,7 @@ void declare(config::Section& s, BlanketElementParameters& p) {
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
   declare_surroundings(s, p.initial_temperature, p.ambient,
-                       "temperature of the wall; the blanket starts "
-                       "steady");
+                       "temperature of the wall, with which the blanket starts in a steady state");
 }
 
 void declare(config::Section& section, ElementParameters& p) {

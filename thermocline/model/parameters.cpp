@@ -83,11 +83,11 @@ void declare_elements(config::Section& section, TankParameters& p) {
   declare_section(section, "shell", p.shell, "metal wall of rings");
   section.optional_section<Present>(
       "filler-mechanics", p.mechanics, [](config::Section&, Present&) {},
-      "the filler follows the wall outwards and resists inwards, between Rankine's active and passive states");
+      "the filler follows the wall when it moves outward and resists it when it moves inward, between Rankine's active and "
+      "passive states");
   declare_section(
       section, "external-wall", p.external_wall,
-      "another program computes the wall's stress: it receives temperature and pressure and gives its "
-      "displacement");
+      "another program computes the wall's stress: it receives temperature and pressure and gives its displacement");
   declare_section(section, "insulation", p.insulation, "blanket around the shell");
   section.optional_section<UllageSpace>(
       "ullage", p.ullage,

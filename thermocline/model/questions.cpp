@@ -14,8 +14,7 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const M
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
   return fmt::format(
-      "{} is {:.6g} K, that is {:.1f} degC, but {} is not a liquid below {:.0f} degC; write '{:.6g} "
-      "degC' if that is intended",
+      "{} is {:.6g} K, that is {:.1f} degC, but {} is not a liquid below {:.0f} degC; write '{:.6g} degC' if that is intended",
       what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
 }
 
@@ -62,8 +61,8 @@ std::string missing_weather(const TankParameters& p) {
   const bool plant = p.flow.type == FlowParameters::Type::plant;
   const bool deep = p.ground.has_value();
   if (p.ambient_given || !(p.insulation || p.ullage || deep || plant)) return "";
-  return fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
-                     plant ? "plant and tank" : "the surroundings of the tank",
+  return fmt::format("the section 'ambient' is missing, so the conditions of {} are still air of 20 degC{}.",
+                     plant ? "the plant and the tank" : "the surroundings of the tank",
                      plant ? " and no sun, day and night; the field collects nothing" : " and no sun");
 }
 
@@ -71,8 +70,8 @@ std::string restart_beyond_cut_off(const FlowParameters& flow) {
   const PlantParameters& p = flow.plant;
   if (flow.type != FlowParameters::Type::plant || p.restart <= p.cut_off) return "";
   return fmt::format(
-      "flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a temperature is stopped at "
-      "once, so the cut-off alone is effective.",
+      "flow.restart ({:g} K) is above flow.cut-off ({:g} K): a flow that may start is stopped at once, so that only the "
+      "cut-off is effective.",
       p.restart, p.cut_off);
 }
 

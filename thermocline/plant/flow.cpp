@@ -23,12 +23,14 @@ void declare_row(config::Section& s, ScheduleRow& r) {
   s.value("mass-flow", r.mass_flow)
       .unit("kg/s", 1e-6, 1e5)
       .required()
-      .doc("upward (discharge) above 0, downward (charge) below 0");
+      .doc("mass flow: positive upward (discharge), negative downward (charge)");
   as_temperature(s.value("inlet-temperature", r.inlet_temperature))
       .positive()
       .doc("temperature of the inflow");
-  as_temperature(s.value("stop-above", r.stop_above)).doc("the flow stops when the outlet is hotter");
-  as_temperature(s.value("stop-below", r.stop_below)).doc("the flow stops when the outlet is colder");
+  as_temperature(s.value("stop-above", r.stop_above))
+      .doc("the flow stops when the outlet is hotter than this");
+  as_temperature(s.value("stop-below", r.stop_below))
+      .doc("the flow stops when the outlet is colder than this");
   s.check(
       [&r] {
         return r.mass_flow == 0 || r.inlet_temperature > 0
@@ -39,8 +41,9 @@ void declare_row(config::Section& s, ScheduleRow& r) {
 }
 
 void declare_schedule(config::Section& s, FlowParameters& p) {
-  s.list<ScheduleRow>("rows", p.rows, declare_row,
-                      "each applies until the next one; at rest before the first");
+  s.list<ScheduleRow>(
+      "rows", p.rows, declare_row,
+      "rows of the schedule; each applies until the next one, and the fluid is at rest before the first");
   s.value("file", p.file)
       .doc(
           "instead of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] "
@@ -52,8 +55,12 @@ void declare_schedule(config::Section& s, FlowParameters& p) {
             .unit("s", 1e-3, 1e11)
             .not_negative()
             .required()
-            .doc("rows at or after this time ...");
-        q.value("every", r.every).unit("s", 1, 1e9).positive().required().doc("... repeat with this period");
+            .doc("start of the periodic part, which contains the rows at or after this time");
+        q.value("every", r.every)
+            .unit("s", 1, 1e9)
+            .positive()
+            .required()
+            .doc("period with which the periodic part repeats");
       },
       "the schedule repeats forever");
   s.check(

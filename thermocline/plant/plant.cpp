@@ -69,22 +69,22 @@ void declare_control(config::Section& s, PlantParameters& p) {
   as_difference(s.value("cut-off", p.cut_off))
       .positive()
       .doc(
-          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is "
-          "this much too warm, discharging when the inflow of the power block is this much too cold");
+          "charging stops when the inlet of the solar field (or the tank outlet, see cut-off-at) is warmer than 'cold' by this "
+          "much, and discharging when the inlet of the power block is colder than 'hot' by this much");
   s.choice("cut-off-at", p.cut_off_at,
            {{"mixed", PlantParameters::CutOffAt::mixed},
             {"outlet", PlantParameters::CutOffAt::outlet},
             {"field", PlantParameters::CutOffAt::field},
             {"block", PlantParameters::CutOffAt::block}})
       .doc(
-          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been "
-          "mixed with that of the other. outlet: to the tank outlet. field: mixed for charging, outlet "
-          "for discharging. block: the other way round");
+          "mixed: the cut-off applies to the temperature at the inlet of the solar field or power block, after the tank's flow "
+          "has mixed with the flow from the other one. outlet: it applies to the temperature at the tank outlet. field: as "
+          "'mixed' for charging and as 'outlet' for discharging. block: the other way round");
   as_difference(s.value("restart", p.restart))
       .positive()
       .doc(
-          "charging starts only if the bottom of the tank is at most this much too warm, discharging "
-          "only if its top is at most this much too cold");
+          "charging starts only if the bottom of the tank is at most this much warmer than 'cold', and discharging only if its "
+          "top is at most this much colder than 'hot'");
 }
 
 void check_plant(config::Section& s, const PlantParameters& p) {
@@ -131,7 +131,7 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
 
 void declare(config::Section& s, CalendarRule& r) {
   s.value("days", r.days)
-      .doc("names of weekdays in English, or weekdays (monday to friday), weekend; default: every day");
+      .doc("names of weekdays in English, or 'weekdays' (monday to friday) or 'weekend'; default: every day");
   s.value("from", r.from).doc("first day of the season, MM-DD of the weather; default: all year");
   s.value("to", r.to).doc("its last day, MM-DD; it may lie in the next year");
   s.value("load", r.load).doc("share of electric-power, one value or 24");
@@ -191,8 +191,7 @@ std::vector<std::string> Calendar::doubts() const {
   for (std::size_t i = 0; i < rules_.size(); ++i)
     if (!used[i])
       sentences.push_back(fmt::format(
-          "flow.calendar[{}] applies on no day: the weather does not contain its days, or earlier rules "
-          "override it",
+          "flow.calendar[{}] applies on no day: the weather does not contain its days, or earlier rules override it",
           i));
   return sentences;
 }
@@ -206,7 +205,7 @@ void declare(config::Section& s, PlantParameters& p) {
   s.value("block-efficiency", p.block_efficiency)
       .range(0.01, 1)
       .required()
-      .doc("electric power per heat taken");
+      .doc("efficiency: electric power per heat taken");
   s.value("field-area", p.field_area)
       .unit("m^2", 1, 1e8)
       .positive()

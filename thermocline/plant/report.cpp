@@ -91,7 +91,7 @@ void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
       .unit("day", 1, 1e4)
       .not_negative()
-      .doc("these first days, in which the cycle becomes periodic, are excluded from the means");
+      .doc("number of initial days, in which the cycle becomes periodic, that are excluded from the means");
   s.value("profile-day", p.profile_day)
       .unit("day", 1, 1e4)
       .not_negative()
@@ -99,8 +99,7 @@ void declare(config::Section& s, ReportParameters& p) {
   as_difference(s.value("thickness-margin", p.thickness_margin))
       .positive()
       .doc(
-          "the thermocline is the region between the cold temperature plus this margin and the hot "
-          "temperature minus it");
+          "the thermocline is the region between the cold temperature plus this margin and the hot temperature minus it");
   declare_section(
       s, "economics", p.economics,
       "prices, in any currency: the summary then includes capital and levelised cost of electricity");
@@ -265,9 +264,8 @@ void DayReport::refuse_other_run_in() const {
   for (int day = 0; day < days_seen_; ++day) counted += counts(day);
   if (counted != days_counted_)
     throw Error(
-        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a "
-        "run-in of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or "
-        "start a new run.",
+        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a run-in of {:g} days it "
+        "would be {}. Days already counted cannot be removed: keep the run-in, or start a new run.",
         days_seen_, days_counted_, p_.run_in, counted);
 }
 

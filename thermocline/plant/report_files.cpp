@@ -169,8 +169,7 @@ std::vector<std::string> DayReport::doubts() const {
   const double days = results_[Sums::duration] / seconds_a_day;
   if (days_counted_ == 0 && p_.run_in > 0)
     sentences.push_back(fmt::format(
-        "report: no day counts: the run has {} whole days, but the first {:g} are the run-in "
-        "(report.run-in); summary.csv {}",
+        "report: no day counts: the run has {} whole days, but the first {:g} are the run-in (report.run-in); summary.csv {}",
         days_seen_, p_.run_in,
         days > 0 ? fmt::format("covers its last {:.3g} h", 24 * days) : std::string("contains no numbers")));
   if (p_.profile_day && *p_.profile_day * seconds_a_day >= last_time_)
@@ -192,13 +191,13 @@ std::vector<std::string> DayReport::doubts() const {
         period, days / period));
   else if (days < 0.98 * year)
     sentences.push_back(fmt::format(
-        "report: {:.3g} days represent a year in the electricity and its cost or revenue: these are "
-        "accurate only for a run over a whole year",
+        "report: the electricity and its cost or revenue are extrapolated from {:.3g} days to a year: they are accurate only "
+        "for a run over a whole year",
         days));
   else
     sentences.push_back(fmt::format(
-        "report: the {:.4g} counted days are not a whole number of years: some days of the year have "
-        "more weight than others in the electricity and its cost or revenue",
+        "report: the {:.4g} counted days are not a whole number of years, so that some days of the year have more weight than "
+        "others in the electricity and its cost or revenue",
         days));
   return sentences;
 }

@@ -171,7 +171,7 @@ void declare(config::Section& section, ShellParameters& p) {
         as_length(s.value("height", l.height)).positive().required().doc("height");
         s.value("thickness", l.thickness).unit("m", 1e-4, 1).positive().required().doc("thickness");
       },
-      "from the bottom up; the last one continues to the top");
+      "plates from the bottom up; the last one continues to the top");
   section.check([&p] { return p.plates.empty() ? "at least one plate is needed" : ""; }, "plates");
 }
 

@@ -65,8 +65,8 @@ std::vector<std::string> sun_at_night(const WeatherHours& record) {
   }
   if (total == 0 || (std::abs(sum) >= least * total && sum.real() > 0)) return {};
   return {fmt::format(
-      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, and that the clock "
-      "is that of the place; the lines latitude, longitude and time-zone let the run judge better",
+      "{}: the sun shines at night, with irradiance in {} of {} hours{}. Check the column dni_W_m2, and that the hours are "
+      "local time; the lines latitude, longitude and time-zone let the run judge better",
       record.source, std::ranges::count_if(record.dni, [](double dni) { return dni > 0; }), record.dni.size(),
       std::abs(sum) < least * total
           ? ""
@@ -89,8 +89,7 @@ std::vector<std::string> check_sun(const WeatherHours& record) {
   const double ahead = site.solar_ahead / hour;
   if (std::abs(ahead) > farthest_clock)
     all.push_back(fmt::format(
-        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or "
-        "time zone wrong?",
+        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or time zone wrong?",
         record.source, std::abs(ahead), ahead > 0 ? "ahead of" : "behind"));
   double total = 0, dark = 0;
   for (std::size_t h = 0; h < record.dni.size(); ++h) {
@@ -297,7 +296,7 @@ void declare(config::Section& section, WeatherParameters& p) {
        {"file", WeatherKind::file, [&](config::Section& s) { declare_file(s, p); }},
        {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }},
        {"smooth-days", WeatherKind::smooth_days, [&](config::Section& s) { declare_smooth_days(s, p); }}},
-      "source of sun and air");
+      "source of the sun and air data");
 }
 
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {

@@ -341,10 +341,13 @@ def draw_shapes(file: str | pathlib.Path, dpi: int = 110) -> pathlib.Path:
         axes.set_title(
             f"{count}: {number:.4g} Hz" if word == "frequency" else f"{count}: {number:.4g} times the load", fontsize=9
         )
-    left = f"; {rigid} rigid motions are not drawn" if rigid else ""
+    left = f"; {rigid} rigid-body modes are not drawn" if rigid else ""
     what = "shapes of vibration" if word == "frequency" else "shapes of buckling"
     figure.suptitle(
-        f"{file.parent.name}: {what}{left}\n{space.extent_of(points)}; color: displacement, from none to the largest",
+        (
+            f"{file.parent.name}: {what}{left}\n{space.extent_of(points)}; the color shows the displacement, from zero"
+            " to the largest"
+        ),
         fontsize=9,
     )
     return saved(figure, None, None, file.parent, file.with_suffix(".png"))

@@ -16,7 +16,7 @@ from couplet.runs.case import expect
 def below(folder, name):
     """Path of `name` below a folder, in which nothing is a symbolic link."""
     place, parts = pathlib.Path(folder), pathlib.PurePath(name).parts
-    expect(not pathlib.PurePath(name).is_absolute() and ".." not in parts, f"'{name}': expected a name below {place}.")
+    expect(not pathlib.PurePath(name).is_absolute() and ".." not in parts, f"'{name}': expected a name inside {place}.")
     for word in parts:
         place /= word
         expect(

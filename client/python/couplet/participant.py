@@ -95,7 +95,7 @@ class Client:
         if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
             others = sorted(set(everyone[1::4].tolist()) - {VERSION})
             self._end(
-                "a process of the job speaks another protocol"
+                "a process of the job uses another protocol"
                 + (f": version {others[0]}, but this client uses version {VERSION}" if others else "")
             )
         world.Split(MPI.UNDEFINED, world.rank)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what a run wrote: its fields, shapes and monitors, or the picture that a case declares in its section `plot`.
-Of the folder of a run it draws the flow (in 3-D a cut), the deformed bodies colored by stress, temperatures, shapes of
-vibration and buckling, and the monitors that have several instants, but no run of a study in it. Columns of the same
-unit share a diagram. A line is drawn over its length, a plane as a map of each column, and residuals of the coupling
-as the last one of each step, above the number of iterations. The name of each picture is printed."""
+"""Draws the output of a run: its fields, mode shapes and monitors, or the picture that a case declares in its section
+`plot`. For the folder of a run it draws the flow (in 3-D a section), the deformed bodies colored by stress,
+temperatures, vibration and buckling modes, and the monitors with several instants, but no runs of a study in that
+folder. Columns of the same unit share a diagram. A line is drawn over its length and a plane as a map of each column.
+For the residuals of the coupling, the last one of each step is drawn above the number of iterations. The name of each
+picture is printed."""
 import functools
 import os
 import pathlib
@@ -239,28 +240,28 @@ def declare(parser):
         type=pathlib.Path,
         metavar="FILE",
         help=(
-            "a CSV file of a run, a folder of such files, or a case: then its section plot (docs/plots.md), its"
-            " plot.py, or all files of its run"
+            "a CSV file of a run, a folder of such files, or a case, for which its section `plot` (docs/plots.md), its"
+            " plot.py, or all files of its run are drawn"
         ),
     )
     parser.add_argument(
         "--out",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="output folder of the run, with a case (default: the one that the case names)",
+        help="output folder of the run, if a case is given (default: the folder that the case names)",
     )
     parser.add_argument(
         "--only", nargs="+", default=[], metavar="WORD", help="only columns whose name contains one of these words"
     )
-    parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts at this time [s]")
-    parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends at this time [s]")
+    parser.add_argument("--from", dest="low", type=float, metavar="T", help="starts the plot at this time [s]")
+    parser.add_argument("--to", dest="high", type=float, metavar="T", help="ends the plot at this time [s]")
     parser.add_argument(
         "--at",
         type=float,
         metavar="T",
         help="draws lines and planes of the output nearest to this time [s] (default: the last)",
     )
-    parser.add_argument("--log", action="store_true", help="logarithmic scale; residuals always have it")
+    parser.add_argument("--log", action="store_true", help="uses a logarithmic scale, which residuals always have")
     parser.add_argument(
         "--field",
         metavar="NAME",
@@ -287,7 +288,8 @@ def declare(parser):
         type=float,
         metavar="F",
         help=(
-            "draws bodies displaced by F times their displacement (default: 1 with --field, else what makes it visible)"
+            "draws bodies displaced by F times their displacement (default: 1 with --field, otherwise a factor that"
+            " makes the motion visible)"
         ),
     )
     parser.add_argument(
@@ -301,13 +303,13 @@ def declare(parser):
     parser.add_argument(
         "--allow-commands",
         action="store_true",
-        help="runs the plot.py and the functions in Python by which a case draws its picture, with your permissions",
+        help="runs the plot.py and the Python functions with which a case draws its picture, with your permissions",
     )
     parser.add_argument(
         "--picture",
         type=pathlib.Path,
         metavar="FILE.png",
-        help="name of the picture, for a single file (default: FILE.png beside FILE.csv)",
+        help="name of the picture, for a single file (default: FILE.png next to FILE.csv)",
     )
 
 
@@ -320,7 +322,7 @@ def run(options):
         folder = options.out or run_folder(options.files[0])
         warp = 1.0 if options.warp is None else options.warp
         look = (options.picture, options.at, options.component, warp)
-        expect(not options.plane or not options.surface, "--plane: cuts the whole mesh: leave --surface out")
+        expect(not options.plane or not options.surface, "--plane: it cuts the whole mesh, so remove --surface")
         expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
         expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
         print(
@@ -341,7 +343,7 @@ def run(options):
     else:
         expect(
             options.out is None and not options.film,
-            "--out, --film: belong to CASE.yaml; of a run give its folder alone",
+            "--out, --film: belong to CASE.yaml; for a run, give only its folder",
         )
     monitors, folders = [], [name for name in options.files if name.is_dir()]
     for name in options.files:

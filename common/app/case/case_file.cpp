@@ -44,8 +44,8 @@ void list_expected(const config::Document& document, CaseFile& result) {
   if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
   const std::vector<std::string> names = config::keys_of(document, "participants");
   if (names.size() > most_participants)
-    throw Error("{}: {} participants; at most {} are allowed.", config::where(document, "participants"),
-                names.size(), most_participants);
+    throw Error("{}: there are {} participants, but at most {} are allowed.",
+                config::where(document, "participants"), names.size(), most_participants);
   for (const std::string& name : names) {
     // The first invalid name is reported by itself, because its path cannot be looked up.
     if (const std::string problem = problem_of_name(name); !problem.empty())
@@ -53,8 +53,7 @@ void list_expected(const config::Document& document, CaseFile& result) {
     const auto program = config::text_of(document, "participants." + name + ".program");
     if (!program)
       result.errors.push_back(fmt::format(
-          "{}: the key 'program' is missing. It names the program that runs this participant, for "
-          "example solid_solver.",
+          "{}: the key 'program' is missing. It names the program that runs this participant, for example solid_solver.",
           config::where(document, "participants." + name)));
     result.expected.push_back({name, program.value_or("?")});
   }
@@ -89,8 +88,7 @@ std::string find_participant(const CommandLine& command_line, const Program& pro
                   base::did_you_mean(wanted, names, "participants"));
     if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
       throw Error(
-          "--participant {}: this participant is run by the program '{}', but '{}' was started for "
-          "it.",
+          "--participant {}: this participant is run by the program '{}', but '{}' was started for it.",
           wanted, config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
           program.name);
     return wanted;

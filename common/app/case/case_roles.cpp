@@ -83,8 +83,7 @@ class Cast {
       problem = "only mesh_mover can move the mesh of a fluid";
     else if (contract.role == "fluid" && has_mover_)
       problem =
-          "only fluid_solver accepts a moved mesh; your own fluid program must move its mesh itself, "
-          "without `mesh`";
+          "only fluid_solver accepts a moved mesh; your own fluid program must move its mesh itself, without `mesh`";
     if (!problem.empty())
       say(key, fmt::format("'{}' is run by {}, which cannot be the {}: {}{}", *name, who->program,
                            contract.role, problem, others(contract)));
@@ -136,9 +135,11 @@ class Cast {
     if (!flow || !body || !coupling::player_of(flow->program) || !coupling::player_of(body->program)) return;
     const std::string key = "coupling.sub-steps." + body->participant;
     if (const auto steps = config::text_of(document_, key); steps && *steps != "1")
-      say(key, fmt::format("{} supports no sub-steps beside {}: the fluid's added mass acts on its change of "
-                           "velocity over the whole step; use a smaller `simulation.time-step`",
-                           body->program, flow->program));
+      say(key,
+          fmt::format(
+              "{} does not support sub-steps when coupled with {}: the fluid's added mass acts on the change of velocity over "
+              "the whole step; use a smaller `simulation.time-step`",
+              body->program, flow->program));
   }
 
   /// Checks that a fluid and its mesh mover name the same patches: a wall moved by the structure must move.
@@ -156,8 +157,7 @@ class Cast {
       if (*wall == "body" && *type != "moving")
         say(key,
             fmt::format(
-                "the wall '{}' is a body in '{}', which the mesh mover must move: set `type: moving` with "
-                "its `motion`",
+                "the wall '{}' is a body in '{}', which the mesh mover must move: set `type: moving` with its `motion`",
                 patch, *fluid));
       if (*wall == "no-slip" && *type == "moving")
         say(walls + "." + patch + ".type",
@@ -231,8 +231,8 @@ std::vector<std::string> check_wall_mass(const config::Document& document) {
     const std::string key = fmt::format("{}.{}.surface-density", walls, patch);
     if (const auto given = number(document, key, "kg/m^2"); given && *given > most * mass)
       doubts.push_back(fmt::format(
-          "{}: {:.6g} kg/m^2, but the plate '{}' has {:.3g} kg/m^2, density times thickness: implausible; "
-          "check the number and its unit.",
+          "{}: {:.6g} kg/m^2, but density times thickness of the plate '{}' is {:.3g} kg/m^2: implausible; check the number "
+          "and its unit.",
           config::where(document, key), *given, *structure, mass));
   }
   return doubts;
@@ -264,7 +264,7 @@ class ContactSeat {
   }
 
   void take(const std::string& name, const std::string& gaps, const std::vector<std::string>& names) {
-    if (gaps.empty()) return say("gap", "it names a gap of the fluid, and no fluid is coupled");
+    if (gaps.empty()) return say("gap", "it refers to a gap of a fluid, but no fluid is coupled");
     if (std::ranges::find(names, name) == names.end())
       return say("gap", "the fluid has no gap '" + name + "'. " + base::did_you_mean(name, names, "gaps"));
     for (const char* key : {"height", "opening", "direction"})

@@ -91,8 +91,7 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
                "allow a .geo to run commands and write files, with your permissions");
   app.add_flag(
       "--strict{answer}", flags.strict,
-      "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about "
-      "neglected effects");
+      "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about neglected effects");
   app.add_option(
          "--accept", line.accept,
          "accept a finding by its id (in brackets at the end of its line; docs/findings.md); repeatable")
@@ -100,15 +99,15 @@ void add_options(CLI::App& app, CommandLine& line, Flags& flags) {
       ->allow_extra_args(false);
   app.add_option(
          "--diagnostics", flags.diagnostics,
-         "short for --set simulation.diagnostics=WORD: standard, without-errors, or full, with searches that may take as "
-         "long as a solve")
+         "short for --set simulation.diagnostics=WORD (standard, without-errors or full, which includes searches that may take "
+         "as long as a solve)")
       ->type_name("WORD");
   app.add_flag("--check", flags.check, "only check the configuration; exit code 0 or 2");
   app.add_flag("--docs", flags.docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", flags.schema, "print the JSON schema of all keys, for editors");
   app.add_flag("--print-config", flags.print_config, "print all values in effect as YAML");
   app.add_flag("--explain", flags.explain,
-               "print the effects in the case, their cost and the launch line; runs nothing");
+               "print the effects in the case, their cost and the launch line without running the case");
   app.add_flag("-v,--verbose", flags.verbose, "log more, on every rank");
   app.add_flag("-q,--quiet", flags.quiet, "log warnings and errors only");
 }

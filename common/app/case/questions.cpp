@@ -241,7 +241,7 @@ void print_effects(const CaseFile& file, const Program& program) {
     if (is_on(values, key) || is_on(*file.document, key))
       on += fmt::format("  on   {}: {}\n", finding.id, key);
     else
-      off += fmt::format("  off  {}: {}; the run judges it by: {}\n", finding.id,
+      off += fmt::format("  off  {}: {}; the run assesses it by: {}\n", finding.id,
                          *key == '\0' ? "not in the model" : fmt::format("'{}'", key), number);
   }
   fmt::print("{}{}", on, off);

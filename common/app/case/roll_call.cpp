@@ -98,9 +98,8 @@ std::string disagreement(const std::vector<Attendant>& attendants) {
     if (a.case_hash == 0) continue;
     if (a.case_hash != first.case_hash)
       return fmt::format(
-          "\n"
-          "  '{}' reads {} and '{}' reads {}, and the contents differ. All programs of a job need the same "
-          "YAML file and the same --set options.",
+          "\n  '{}' reads {} and '{}' reads {}, and the contents differ. All programs of a job need the same YAML file and the "
+          "same --set options.",
           label(first), first.case_file, label(a), a.case_file);
     if (a.restart != first.restart)
       return fmt::format(
@@ -127,9 +126,8 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
     const auto& run_by = programs[participant];
     if (numbers.size() > 1 || run_by.size() > 1)
       text += fmt::format(
-          "\n"
-          "  {} programs were started as participant '{}' ({}); each participant runs once. Give each "
-          "program its own --participant.",
+          "\n  {} programs were started as participant '{}' ({}); each participant runs once. Give each program its own "
+          "--participant.",
           std::max(numbers.size(), run_by.size()), participant, base::join({run_by.begin(), run_by.end()}));
     const bool known =
         std::any_of(expected.begin(), expected.end(),
@@ -147,11 +145,10 @@ Attendant introduced(const std::string& text, int process) {
   for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
   const auto malformed = [&](const std::string& why) {
     return Error(
-        "The handshake of process {} of the job is malformed: {}. docs/protocol.md, step 3, describes the "
-        "format.",
+        "The handshake of process {} of the job is malformed: {}. docs/protocol.md, step 3, describes the format.",
         process, why);
   };
-  if (fields.size() < 9) throw malformed(fmt::format("it has {} fields, expected 9", fields.size()));
+  if (fields.size() < 9) throw malformed(fmt::format("it has {} fields, but 9 are expected", fields.size()));
   Attendant a;
   a.program = fields[0];
   a.participant = fields[1];

@@ -14,26 +14,28 @@ void declare_fields(config::Section& s, io::FieldChoice& f) {
   s.value("every", f.every)
       .range(0, 1000000)
       .doc(
-          "fields in the volume at each n-th output only; surfaces, samples and the interface at each; 0 means no fields in the "
-          "volume");
+          "volume fields are written only at every n-th output, whereas surfaces, samples and the interface are written at "
+          "each output; 0 writes no volume fields");
   s.value("compression", f.compression)
       .range(0, 9)
-      .doc("compression (deflate) of fields in the volume, from 0 (none) and 1 (fast) to 9 (small)");
+      .doc("deflate compression level of the volume fields: 0 (none), 1 (fastest) to 9 (smallest files)");
   s.optional_section<io::FieldChoice::Box>(
       "box", f.box,
       [](config::Section& b, io::FieldChoice::Box& box) {
-        b.value("from", box.from).unit("m", 1e-9, 1e4).required().doc("lowest corner");
+        b.value("from", box.from).unit("m", 1e-9, 1e4).required().doc("corner with the smallest coordinates");
         b.value("to", box.to)
             .unit("m", 1e-9, 1e4)
             .required()
-            .doc("highest corner; in two dimensions the third number is ignored");
+            .doc("corner with the largest coordinates; in two dimensions the third number is ignored");
         b.check(
             [&box] {
-              return (box.to - box.from).minCoeff() < 0 ? "it must not be below 'from' in any direction" : "";
+              return (box.to - box.from).minCoeff() < 0
+                         ? "none of its coordinates may be below that of 'from'"
+                         : "";
             },
             "to");
       },
-      "volume fields only of cells that start in this box; default: all cells");
+      "volume fields are written only for cells that are initially inside this box; default: all cells");
 }
 
 void declare_files(config::Section& section, SimulationParameters& p) {
@@ -41,25 +43,27 @@ void declare_files(config::Section& section, SimulationParameters& p) {
       "output",
       [&](config::Section& s) {
         s.value("folder", p.output_folder)
-            .doc("folder in which each participant creates its own; relative to the folder of the YAML file");
+            .doc(
+                "output folder, in which each participant creates a subfolder; relative to the folder of the YAML file");
         s.check(
             [&p] {
               const bool is_of_a_shell =
                   p.output_folder.starts_with('~') || p.output_folder.find('$') != std::string::npos;
               return is_of_a_shell
-                         ? "'~' and '$' are not replaced here, as a shell would do; write the whole path"
+                         ? "'~' and '$' are not expanded here as they are by a shell; write the full path"
                          : "";
             },
             "folder");
         s.value("interval", p.output_interval)
             .unit("s", 1e-12, 1e10)
             .not_negative()
-            .doc("time between field outputs; 0 for start and end only");
+            .doc("time between field outputs; with 0, fields are written only at the start and the end");
         s.value("steps", p.output_steps)
-            .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
+            .doc(
+                "write steps.csv, which lists the iterations, error, energy and wall time of each accepted step");
         declare_fields(s, p.fields);
       },
-      "fields for visualisation");
+      "fields for visualization");
   section.section(
       "checkpoint",
       [&](config::Section& s) {
@@ -67,9 +71,11 @@ void declare_files(config::Section& section, SimulationParameters& p) {
             .unit("s", 1e-12, 1e10)
             .not_negative()
             .doc("time between checkpoints; 0 means only at the end of the run");
-        s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
+        s.value("keep", p.checkpoints_kept)
+            .range(1, 1000000)
+            .doc("number of most recent checkpoints to keep");
       },
-      "files for --restart");
+      "checkpoints, from which --restart continues");
 }
 
 }  // namespace
@@ -117,9 +123,8 @@ void declare(config::Section& section, SimulationParameters& p) {
       .unit("s", 1, 1e6)
       .not_negative()
       .doc(
-          "the job ends and names the culprit when one of its processes shows no sign of life for this long "
-          "(an iteration of a solver, a phase of a step, or processor time during meshing, factorization "
-          "and file output); 0 means never");
+          "the job ends and names the process responsible if a process shows no sign of activity for this long (an iteration "
+          "of a solver, a phase of a step, or processor time during meshing, factorization and file output); 0 means never");
   declare_files(section, p);
   section.check(
       [&]() -> std::string {

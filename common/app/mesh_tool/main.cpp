@@ -68,8 +68,8 @@ void open(MPI_Comm comm, const Words& words) {
                base = parallel::sum(comm, before);
   if (parallel::comm_rank(comm) == 0)
     std::printf(
-        "%d ranks, %.0f cells, at most %.0f per rank, copies %.3f; %.2f s; peak of memory %.1f MB over all ranks, %.1f MB on "
-        "one, of which %.1f MB were there before\n",
+        "%d ranks, %.0f cells, at most %.0f per rank, ghost cells per cell %.3f; %.2f s; peak of memory %.1f MB over all "
+        "ranks, %.1f MB on one, of which %.1f MB were in use before\n",
         parallel::comm_size(comm), sum, most, copies, seconds, peaks, peak, base);
 }
 
@@ -94,15 +94,18 @@ int run(int argc, char** argv) {
   CLI::App* of_file = app.add_subcommand("cut", "writes a mesh (.msh, .geo, .inp, ...) as a cut mesh");
   of_file->add_option("file", words.file)->required();
   of_file->add_option("--parameter", assignments, "NAME=VALUE of the .geo; repeatable");
-  CLI::App* of_box = app.add_subcommand("box", "writes a box, of which each rank makes its block");
+  CLI::App* of_box =
+      app.add_subcommand("box", "writes a mesh of a box, of which each rank generates one block");
   of_box->add_option("--cells", words.cells, "hexahedra along x, y, z")->required();
   of_box->add_option("--length", words.length, "[m]");
   of_box->add_flag("--tetrahedra", words.tetrahedra, "cuts each hexahedron into six");
   for (CLI::App* writer : {of_file, of_box})
     writer->add_option("-o,--output", words.output, "the cut mesh, .h5")->required();
-  CLI::App* opening = app.add_subcommand("open", "opens a mesh as the programs do; prints time and memory");
+  CLI::App* opening =
+      app.add_subcommand("open", "opens a mesh as the programs do and prints the time and memory required");
   opening->add_option("file", words.file)->required();
-  opening->add_flag("--solid", words.solid, "as solid_solver opens it, for stresses at the surface");
+  opening->add_flag("--solid", words.solid,
+                    "opens it as solid_solver does, with the data for surface stresses");
   for (CLI::App* reader : {of_file, opening})
     reader->add_option("--dimension", words.dimension, "dimension of the mesh")->check(CLI::Range(2, 3));
   try {

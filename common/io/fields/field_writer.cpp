@@ -233,7 +233,7 @@ void FieldWriter::FieldFiles::set_aside(const std::string& problem) {
     std::filesystem::path aside = file().string() + ".aside";
     while (std::filesystem::exists(aside)) aside += "-1";
     std::filesystem::rename(file(), aside);
-    log::warn("{} It is set aside as '{}', and the outputs from here on are in a new file.", problem,
+    log::warn("{} It was renamed to '{}', and all further outputs go to a new file.", problem,
               aside.string());
   });
 }

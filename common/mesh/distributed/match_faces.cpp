@@ -27,15 +27,14 @@ std::string face_without_cell(const std::string& patch, const std::string& where
 
 std::string face_inside(const std::string& patch, const std::string& where) {
   return fmt::format(
-      "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove the "
-      "inner surface from the physical group (or the mesh contains every cell twice).",
+      "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove the inner surface "
+      "from the physical group. If there is none, check whether the mesh contains every cell twice.",
       patch, where);
 }
 
 std::string face_in_two_patches(const std::string& one, const std::string& other, const std::string& where) {
   return fmt::format(
-      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one "
-      "patch.",
+      "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly one patch.",
       where, one, other);
 }
 
@@ -150,8 +149,7 @@ class MeetingFaces {
 
 std::string face_of_many_cells(GlobalIndex cells, const std::string& where) {
   return fmt::format(
-      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
-      "overlapping cells.",
+      "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or overlapping cells.",
       cells, where);
 }
 
@@ -197,8 +195,8 @@ void warn_unnamed(MPI_Comm comm, const MeshBlock& block, std::span<const FaceSid
   const std::vector<std::string> places = places_of(comm, block, first);
   if (parallel::comm_rank(comm) != 0) return;
   log::info(
-      "mesh: {} boundary face{} in no physical group {} the patch 'rest', at {}{}. If such a location is inside "
-      "the domain, the mesh has double points there; merge them.",
+      "mesh: {} boundary face{} in no physical group {} the patch 'rest', at {}{}. If such a location is inside the domain, "
+      "the mesh has duplicate points there; merge them.",
       n, n == 1 ? "" : "s", n == 1 ? "forms" : "form", base::join(places),
       n > std::ssize(places) ? ", ..." : "");
 }

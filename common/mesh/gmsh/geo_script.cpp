@@ -172,7 +172,7 @@ class Scan {
     std::error_code ignored;
     const fs::path named = file.parent_path() / token.text;
     if (token.is("Sleep"))
-      throw Error("The line {} of '{}' lets gmsh wait (Sleep). Remove it.", token.line, file.string());
+      throw Error("The line {} of '{}' makes gmsh wait (Sleep). Remove it.", token.line, file.string());
     if (token.is_text() && fs::is_other(named, ignored))
       throw Error("The line {} of '{}' names '{}', which is a device or a pipe and may have no end.",
                   token.line, file.string(), named.string());

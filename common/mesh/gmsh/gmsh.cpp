@@ -183,7 +183,8 @@ bool is_sound_cache(const std::filesystem::path& file) {
     fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
     return true;
   }
-  log::warn("The cached mesh '{}' is damaged, or not written by Couplet; it is regenerated.", file.string());
+  log::warn("The cached mesh '{}' is damaged or was not written by Couplet, so it is regenerated.",
+            file.string());
   return false;
 }
 

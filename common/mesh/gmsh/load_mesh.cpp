@@ -86,7 +86,7 @@ void check_mesh_file(const std::filesystem::path& file, const MeshParameters& pa
         "names of its parts: {}.",
         file.string(),
         program.empty() ? "not a .msh, .geo, .inp, .su2, .bdf, .unv, .med, .exo or .cgns file"
-                        : fmt::format("one of {}, which is not read", program),
+                        : fmt::format("a file of {}, which is not supported", program),
         formats_with_names);
   if (kind != ".geo" && !parameters.empty())
     throw Error(

@@ -154,7 +154,7 @@ class MshReader {
     const long mode = in_.text_integer(), data_size = in_.text_integer();
     if (version != 2.2 && version != 4.1)
       in_.fail(fmt::format(
-          "Version {} of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41).",
+          "Version {} of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format msh41).",
           version));
     if (data_size != 8)
       in_.fail(fmt::format("Numbers of {} bytes are not supported; expected 8.", data_size));

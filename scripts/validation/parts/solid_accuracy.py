@@ -43,7 +43,7 @@ def snap(job):
 
 # -- rubber -----------------------------------------------------------------------------------------------------------
 HALF, NUMBER = 0.5, r"([-+.\de]+)"
-FOLD = "the free surface has folded beyond the plane of the support"
+FOLD = "the free surface has folded past the plane of the support"
 
 
 def followed(job, n):

@@ -47,7 +47,7 @@ check(len(optimise.search(lambda todo: [FUNCTIONS["valley"](p) for p in todo], 2
 said = []
 optimise.search(lambda todo: [-(3 - (p[0] - 0.5) ** 2) for p in todo], 1, 9, 1e-2, 1, say=said.append, sign=-1)
 check(said[0] == "optimise: 3 runs, best so far 3", f"a value that is maximised: {said[0]}")
-check("three times in a row nothing better" in said[-1] and "of 9 runs" in said[-1], f"why it ended: {said[-1]}")
+check("three times in a row, no improvement" in said[-1] and "of 9 runs" in said[-1], f"why it ended: {said[-1]}")
 said = []
 optimise.search(lambda todo: [(p[0] - 0.3) ** 2 for p in todo], 1, 4, -1, 1, say=said.append)
 check(said[-1] == "optimise: ends because all 4 runs are used (study.optimise.runs)", f"why it ended: {said[-1]}")

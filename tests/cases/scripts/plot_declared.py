@@ -92,7 +92,7 @@ WRONG = [  # when the case is checked
     (("panels", 0, "curves", 2, "to"), None, "a function needs 'from' and 'to'"), (("quantities", "tip", "prob"), 1, "plot.quantities.tip: unknown key 'prob'"),
     (("panels", 0, "curves", 1, "optional"), True, "'optional' belongs to a monitor"), (("panels", 0, "curves", 5), {"python": "none.py: f", "y": "a"}, "curves[5].python: 'none.py: f'")]
 LATE = [  # when it is drawn
-    ((*CURVE, "y"), "1000*z", "curves[0].y: 'z'; valid are numbers"), ((*CURVE, "y"), "__import__('os')", "curves[0].y: "), ((*CURVE, "monitor"), "solid/prob.csv", "there is no "),
+    ((*CURVE, "y"), "1000*z", "curves[0].y: 'z' is not allowed here; use numbers"), ((*CURVE, "y"), "__import__('os')", "curves[0].y: "), ((*CURVE, "monitor"), "solid/prob.csv", "there is no "),
     ((*CURVE, "with"), {"y": "tip"}, "curves[0].with.y: "), (("panels", 1, "curves", 0, "with"), {"s": "strain"}, "there is no field 'strain'; there are: stress"), (("panels", 1, "curves", 0, "where"), "x > 9", "no row of solid's fields is left"),
     ((*CURVE, "colour"), "notacolour", "plot.panels[0]: 'notacolour'"), (("panels", 2, "colours"), "bogus", "plot.panels[2]: 'bogus'"), (("title",), "$\\nosuch$", "plot: "),
     (("quantities", "tip", "probe"), "top", "plot.quantities.tip: ")]

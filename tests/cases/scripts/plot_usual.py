@@ -62,7 +62,7 @@ with tempfile.TemporaryDirectory() as name:
         corners, cells, ways = space.polygons_of(block, CUBES, plane, "")
         areas = [area(c) for c in corners]
         check(f"hexahedra cut by {plane}", list(cells) == wanted and np.allclose(areas, 1) and plane[0] not in ways, (cells, areas, ways))
-    for plane, words in (("z = 2.5", "no cell meets the plane z = 2.5: z goes from 0 to 2 m"), ("z", "expected such as y = 0"), ("r = 1", "expected such as y = 0")):
+    for plane, words in (("z = 2.5", "no cell meets the plane z = 2.5: z goes from 0 to 2 m"), ("z", "expected a plane such as y = 0"), ("r = 1", "expected a plane such as y = 0")):
         check(f"no cut by {plane}", refused(words, lambda: space.polygons_of(block, CUBES, plane, "")))
 
     tetrahedra = write(folder / "tetrahedra.h5", TETRAHEDRON, [[brick[k] for k in four] for brick in BRICKS for four in SIX], CUBES, [1], {"p": range(24)})

@@ -60,7 +60,7 @@ assert step.name == "step" and step.changes(2)["simulation.time-step"] == 2 * st
 # -- a setting that the sources would override is refused, not ignored
 done = subprocess.run([sys.executable, ROOT / "scripts/couplet", "study", ROOT / "configs/taylor-green-2d/case.yaml", "--quantities", "--set", "simulation.time-step=0.01"],
                       capture_output=True, text=True, timeout=60)
-assert done.returncode != 0 and "study.sources gives it its own values" in done.stdout + done.stderr, done
+assert done.returncode != 0 and "study.sources sets this key itself" in done.stdout + done.stderr, done
 
 if len(sys.argv) > 1:
     with tempfile.TemporaryDirectory(prefix="couplet-interest-") as folder:

@@ -285,7 +285,7 @@ class Scene:
         (folder / "square.msh").write_bytes(MESH.read_bytes())
         done = couplet(folder, "resume", "out")
         check("the checkpoint before the damaged one is used", done.returncode == 0 and "is damaged" in done.stderr and "step-00000003 is used" in done.stderr, done.stderr[-500:])
-        check("lost tables are named", "probes.csv' was not there: it begins at t = 0.003 s" in done.stdout, done.stdout[-500:])
+        check("lost tables are named", "probes.csv' did not exist at the restart: it begins at t = 0.003 s" in done.stdout, done.stdout[-500:])
         bad_requests(folder / "out")
 
 

@@ -279,8 +279,8 @@ def wrong(folder):
         check(said, result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
     case.write_text(text)
     for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
-                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would hardly advance"), (("run", case, "--print", "-n", "1" + 20 * "0"), "at most 1000000"),
-                        (("run", case, "-n", "fluid=2,fluid=3"), "a participant twice"), (("run", case, "-n", "1e3"), "one whole number"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
+                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "-n", "fluid=100000"), "would make almost no progress"), (("run", case, "--print", "-n", "1" + 20 * "0"), "at most 1000000"),
+                        (("run", case, "-n", "fluid=2,fluid=3"), "a participant is named twice"), (("run", case, "-n", "1e3"), "one whole number"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
                         (("new", folder / "a"), "exists and is not empty"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap"),
                         (("new", folder / "b", "--from", "flap"), "near: perpendicular-flap")):
         result = ask(bin_, *words)

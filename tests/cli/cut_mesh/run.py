@@ -149,7 +149,7 @@ def refused(folder):
     both("of another version", "it is of version 2; this program reads version 1")
     with h5py.File(folder / "square.h5", "a") as file:
         del file.attrs["cut-mesh-version"]
-    both("another HDF5 file", "no cut mesh")
+    both("another HDF5 file", "not a cut mesh")
     (folder / "square.h5").write_bytes(whole)
     both("a wrong name of a patch", "top", key="participants.it.boundaries.lid", changed=case.replace("top: {", "lid: {"))
     (folder / "case.yaml").write_text(case.replace("dimension: 2", "dimension: 2, mesh-parameters: {n: 4}"))

@@ -208,7 +208,7 @@ class Formats(unittest.TestCase):
             self.assertEqual(dispatch("weather", [str(self.folder / "a.epw"), "-o", str(self.folder / "b.csv.gz")]), 0)
             self.assertEqual(dispatch("weather", [str(self.folder / "a.epw")]), 0)
         self.assertEqual(gzip.decompress((self.folder / "b.csv.gz").read_bytes()), (self.folder / "a_weather.csv").read_bytes())
-        self.refuse(nsrdb(), "out.csv is the file that is read", "out.csv")
+        self.refuse(nsrdb(), "out.csv is the file to be converted", "out.csv")
 
     def test_damaged_files_are_converted_or_refused(self):
         dice, converted = random.Random(1), 0

@@ -18,7 +18,7 @@ SCENES = [
     ("handshake", "3", ["(an external program) uses version 3 of the protocol", "here use version 7"]),
     ("handshake", "8", ["(an external program) uses version 8 of the protocol", "here use version 7"]),
     ("handshake", "mark", ["is not a Couplet program", "begins with 42"]),
-    ("introduction", "nothing", ["it has 0 fields, expected 9"]),
+    ("introduction", "nothing", ["it has 0 fields, but 9 are expected"]),
     ("introduction", "words", ["not a whole number"]),
     ("introduction", "ends", ["it has 0 fields"]),
     ("reply", "version", ["The reply of 'body' to initialise", "protocol version 8", "uses version 7"]),

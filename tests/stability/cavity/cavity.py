@@ -70,7 +70,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-cavity-") as scratch:
     require("without the key: refused", refused.returncode != 0 and "set 'volume-level: structure'" in refused.stdout + refused.stderr,
           f"exit code {refused.returncode}")
     shorter = run(here / "sub-steps", "closed-cavity", CAVITY, [*SMALL, "coupling.sub-steps={lid: 3}"])
-    require("sub-steps of the lid: refused", shorter.returncode != 0 and "supports no sub-steps" in shorter.stdout + shorter.stderr,
+    require("sub-steps of the lid: refused", shorter.returncode != 0 and "does not support sub-steps" in shorter.stdout + shorter.stderr,
           f"exit code {shorter.returncode}")
     outlet = run(here / "outlet", "balloon", BALLOON, [*end, "participants.channel.volume-level=structure"])
     require("with the key and an outlet: refused", outlet.returncode != 0 and "this fluid has an outlet" in outlet.stdout + outlet.stderr,

@@ -19,12 +19,11 @@ const Case cases[] = {
     {"iteration: 5", "3:1: iteration: unknown key. Did you mean 'iterations'?"},
     {"Load: 5", "3:1: Load: unknown key. Did you mean 'load'?"},
     {"quantities: {drag: {}}",
-     "3:1: quantities: unknown key. Quantities of this program (a force, a value at a probe, an extreme) belong to the section 'study: "
-     "{quantities: ...}' of the case; 'couplet study CASE --quantities' estimates their errors by differences of coarser runs (docs/studies.md)."},
+     "3:1: quantities: unknown key. Quantities of this program (a force, a value at a probe, an extremum) belong to the section 'study: "
+     "{quantities: ...}' of the case; 'couplet study CASE --quantities' estimates their errors from differences between coarser runs (docs/studies.md)."},
     {"density: 5",
-     "3:1: density: unknown key. Valid keys: mesh, analysis, material, interval, temperature, relaxation, "
-     "iterations, "
-     "large, load, gravity, times, patches, divisions, limit, damping, boundaries, probes."},
+     "3:1: density: unknown key. Valid keys: mesh, analysis, material, interval, temperature, relaxation, iterations, large, "
+     "load, gravity, times, patches, divisions, limit, damping, boundaries, probes."},
     {"interval: -1 ms", "3:1: interval: -0.001 s is out of range; expected a value at least 0 s."},
     {"interval: 5 m",
      "3:1: interval: '5 m': the unit 'm' is not convertible to s. Expected s or a unit convertible to it."},

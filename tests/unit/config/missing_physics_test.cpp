@@ -57,10 +57,13 @@ TEST(MissingPhysics, a_key_or_value_that_asks_for_it_is_answered_with_the_limit)
 TEST(MissingPhysics, a_key_or_word_that_is_gone_is_answered_with_what_to_use) {
   EXPECT_THAT(
       errors_of("fluid_solver", "upstream-line: {length: 1}"),
-      ElementsAre("case.yaml:4:5: participants.p.upstream-line: unknown key. It is gone (CHANGELOG.md). "
-                  "Instead: mesh the tube, or set 'upstream-volume'."));
-  EXPECT_THAT(errors_of("fluid_solver", "model: runge-kutta"),
-              ElementsAre(HasSubstr("'runge-kutta' is not available. It is gone (CHANGELOG.md). Instead: ")));
+      ElementsAre(
+          "case.yaml:4:5: participants.p.upstream-line: unknown key. This key or value was removed (CHANGELOG.md). "
+          "Instead: mesh the tube, or set 'upstream-volume'."));
+  EXPECT_THAT(
+      errors_of("fluid_solver", "model: runge-kutta"),
+      ElementsAre(HasSubstr(
+          "'runge-kutta' is not available. This key or value was removed (CHANGELOG.md). Instead: ")));
   EXPECT_THAT(errors_of("solid_solver", "upstream-line: 1"),
               ElementsAre(HasSubstr("unknown key. Valid keys: ")));
 }

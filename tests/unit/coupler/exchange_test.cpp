@@ -201,8 +201,9 @@ TEST(Links, what_does_not_fit_is_named) {
   };
   auto wrong = sides();
   wrong[1].interface.takes.push_back({"pressure", "Pa", Place::faces, 1});
-  EXPECT_THAT(message(wrong),
-              HasSubstr("'wall' takes 'pressure', which no participant gives. Given are: 'heat' by 'bed'"));
+  EXPECT_THAT(
+      message(wrong),
+      HasSubstr("'wall' takes 'pressure', but no participant gives it. Data available: 'heat' by 'bed'"));
   wrong = sides();
   wrong[1].interface.takes[1].unit = "degC";
   EXPECT_THAT(message(wrong), HasSubstr("'wall' takes 'film-temperature' in degC, but 'bed' gives it in K."));

@@ -139,7 +139,7 @@ TEST(AutoSolid, scene_10_a_press_that_takes_ten_seconds_is_static) {
 TEST(AutoSolid, the_lowest_period_is_that_of_a_beam_held_at_one_end) {
   const auto choices =
       choose_effects(bar("1e6*t"), box(3, Vec3(1, 0.1, 0.1), 0.02), {.end_time = 10, .time_step = 0.1});
-  EXPECT_THAT(choices.back().reason, HasSubstr("the lowest period is about 0.0123 s"));
+  EXPECT_THAT(choices.back().reason, HasSubstr("the longest natural period is about 0.0123 s"));
 }
 TEST(AutoSolid, scene_11_a_blow_of_a_few_milliseconds_is_dynamic) {
   EXPECT_EQ(solid_choice(bar("1e6*exp(-(t-0.005)^2/1e-6)"), "analysis", {.end_time = 0.01}), "dynamic");

@@ -177,13 +177,14 @@ TEST(FluidFindings, on_layers_turn_at_their_limits) {
 }
 
 TEST(FluidFindings, on_eddies_say_that_they_could_be_omitted_or_model_nothing_in_two_dimensions) {
-  EXPECT_THAT(finding_of(fluid::eddies(3, 0.002))->sentence,
-              HasSubstr("turbulence model (max eddy viscosity = 0.002 of the molecular; limit 0.01)"));
+  EXPECT_THAT(
+      finding_of(fluid::eddies(3, 0.002))->sentence,
+      HasSubstr("turbulence model (max eddy viscosity = 0.002 times the molecular viscosity; limit 0.01)"));
   EXPECT_THAT(finding_of(fluid::eddies(3, 0.02))->sentence, HasSubstr("needed"));
   EXPECT_GT(finding_of(fluid::eddies(2, 0.009))->saves, 0);
   EXPECT_EQ(finding_of(fluid::eddies(2, 0.011))->saves, 0);
   EXPECT_NEAR(fluid::eddies(2, 3).share, 0.5, 1e-12);
-  EXPECT_THAT(fluid::eddies(2, 100).advice, HasSubstr("models no turbulence"));
+  EXPECT_THAT(fluid::eddies(2, 100).advice, HasSubstr("represents no turbulence"));
 }
 
 // SF6 at 48 m/s, and a reed's channel of 60 mm and 20 cm^3 with a stroke of 0.2 cm^3.

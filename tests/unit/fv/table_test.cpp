@@ -112,7 +112,7 @@ TEST(Table, columns_that_may_be_meant_otherwise_are_refused) {
   refused("x (m),p (kPa)\n0,1\n1,2\n", "p (kPa)", "'x (m)' has its unit in round brackets");
   refused("x,p (kPa)\n0,1\n1,2\n", "2", "Write 'p [kPa]'");
   refused("x,p,p\n0,1,2\n1,2,3\n", "p", "more than one column is called 'p'");
-  refused("p,x\n0,1\n1,2\n", "p", "'p' is the first column, which holds the table's points");
+  refused("p,x\n0,1\n1,2\n", "p", "'p' is the first column, which contains the table's points");
   for (const char* name : {"p [kPa]", "p(x)", "p (upper side)", "p (2)"}) {
     const CsvFile file(std::string("x,") + name + "\n0,1\n1,2\n");
     EXPECT_NO_THROW(read_table(file.path(), "2", Outside::clamp)) << name;

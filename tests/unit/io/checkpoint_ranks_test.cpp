@@ -116,7 +116,7 @@ TEST(CheckpointRanks, another_mesh_is_refused_with_file_and_cause) {
   write_all(world, one, scratch / "a.h5");
   EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "a.h5").on(other.mesh); }),
               ::testing::AllOf(HasSubstr("a.h5' is from another mesh, of 60 cells, 120 points"),
-                               HasSubstr("in another order")));
+                               HasSubstr("in a different order")));
 }
 
 // An order of distributed entries that is none is refused on all ranks; a guest's numbers may be wrong.

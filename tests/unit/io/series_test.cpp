@@ -63,7 +63,7 @@ TEST(Series, a_lost_file_is_named) {
   const CheckpointStamp stamp{.run = "1", .step = 2, .time = 0.2};
   finish_checkpoint_set(begin_checkpoint_set(out / "checkpoints", stamp), stamp);
   EXPECT_THAT(said([&] { Series(file, columns, 0.2); }),
-              HasSubstr("tip.csv' was not there: it begins at t = 0.2 s"));
+              HasSubstr("tip.csv' did not exist at the restart: it begins at t = 0.2 s"));
   EXPECT_EQ(said([&] { Series(file, columns, 0.2); }), "");
   EXPECT_EQ(said([&] { Series(scratch / rank / "elsewhere/solid/tip.csv", columns, 0.2); }), "");
   EXPECT_EQ(said([&] { write_three(file); }), "");

@@ -131,7 +131,7 @@ TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
     EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).mesh.cells.n_global(), cells);
     if (comm_rank(MPI_COMM_WORLD) == 0) {
       const std::string log = ::testing::internal::GetCapturedStdout();
-      EXPECT_THAT(log, HasSubstr("is damaged, or not written by Couplet"));
+      EXPECT_THAT(log, HasSubstr("is damaged or was not written by Couplet"));
     }
     EXPECT_EQ(content(cache), whole);
   }

@@ -59,7 +59,7 @@ TEST(MeshErrors, patch_between_cells_is_refused) {
   EXPECT_EQ(
       error_of(raw),
       "Patch 'ymax' has a face at (1, 0.5) that lies between two cells. A patch must lie on the boundary; "
-      "remove the inner surface from the physical group (or the mesh contains every cell twice).");
+      "remove the inner surface from the physical group. If there is none, check whether the mesh contains every cell twice.");
 }
 
 TEST(MeshErrors, a_cell_in_two_groups_is_named) {
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"empty", "", ":1: This is not a gmsh .msh file: it does not start with $MeshFormat."},
         BadFile{
             "other_version", "$MeshFormat\n4 0 8\n$EndMeshFormat\n",
-            ":2: Version 4 of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41)."},
+            ":2: Version 4 of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format msh41)."},
         BadFile{
             "polygon", head + nodes + "$Elements\n1\n1 34 2 1 1 1 2 3 4 5 6\n$EndElements\n",
             ":12: Element type 34 is not supported: expected a line, triangle, quadrilateral, tetrahedron, "

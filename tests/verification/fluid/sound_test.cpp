@@ -359,7 +359,7 @@ TEST(Sound, what_does_not_go_with_it_is_refused) {
   EXPECT_EQ(told(p), "");
   p.compressibility->speed_of_sound.reset();
   p.density = 100;
-  EXPECT_THAT(told(p), ::testing::HasSubstr("no known gas or liquid"));
+  EXPECT_THAT(told(p), ::testing::HasSubstr("not a known gas or liquid"));
 }
 
 }  // namespace couplet::fluid::test::sound_test

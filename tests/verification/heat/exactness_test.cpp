@@ -84,7 +84,7 @@ TEST(SteadyHeat, tells_the_time_that_it_neglects_by_the_mean_temperature) {
   ASSERT_EQ(said.size(), 1U);
   EXPECT_NE(
       said[0].find(
-          "heat needs about 5.3e+02 s to spread through the solid, the temperature changes within 1.9e+02 s"),
+          "heat needs about 5.3e+02 s to spread through the solid, but the temperature changes within 1.9e+02 s"),
       std::string::npos)
       << said[0];
 }

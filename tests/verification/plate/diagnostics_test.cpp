@@ -109,7 +109,7 @@ TEST(PlateGuards, all_rigid_motions_are_kept_or_none) {
     Parameters p = plate_held();
     p.number = n;
     const std::string text = message_of([&] { Structure(p, PlateContext{}, &raw); });
-    EXPECT_NE(text.find("3 free rigid motions"), std::string::npos) << text;
+    EXPECT_NE(text.find("3 free rigid-body motions"), std::string::npos) << text;
     EXPECT_NE(text.find("Keep at least 3"), std::string::npos) << text;
   }
   Parameters p = plate_held();
@@ -369,7 +369,7 @@ TEST(PlateGuards, axes_are_at_right_angles_however_short_they_are) {
   EXPECT_THAT(messages("[0, 1e-200, 0]", "[0, 0, 1e200]"), testing::IsEmpty());
   for (const char* y : {"[0, 1e-200, 1e-203]", "[0, 0, 0]"})
     EXPECT_THAT(messages("[0, 1e-200, 0]", y),
-                testing::ElementsAre(testing::HasSubstr("must be at right angles")));
+                testing::ElementsAre(testing::HasSubstr("must be perpendicular")));
 }
 
 TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {

@@ -198,7 +198,8 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   });
   says("face 2 refers to vertex", [](ModalModel& m) { m.faces.index[4] = m.faces.index[3]; });
   says("is inside out", [](ModalModel& m) { std::swap(m.faces.index[3], m.faces.index[4]); });
-  says("mode 1 has 0 Hz, but its shape is not a rigid motion", [](ModalModel& m) { m.frequency[0] = 0; });
+  says("mode 1 has a frequency of 0 Hz, but its shape is not a rigid-body motion",
+       [](ModalModel& m) { m.frequency[0] = 0; });
   EXPECT_EQ(damaged([](ModalModel& m) { m.face_density.clear(); }), "");
   EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = -1; }).find("frequency of mode 4"),
             std::string::npos);

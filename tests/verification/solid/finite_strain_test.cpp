@@ -202,7 +202,7 @@ std::string failure_of_block(double squeezed, int cells = 8, double by = 0.025) 
 }
 
 TEST(FiniteStrain, a_step_that_fails_tells_of_a_surface_folded_onto_its_support) {
-  const std::string fold = "Beside 'ymax' the free surface has folded beyond the plane of the support";
+  const std::string fold = "Next to 'ymax' the free surface has folded past the plane of the support";
   EXPECT_THAT(failure_of_block(0.2), HasSubstr(fold));
   // Here the face at the rim itself is pressed flat; those beside it fold.
   EXPECT_THAT(failure_of_block(0.165, 16, 0.0055), HasSubstr(fold));

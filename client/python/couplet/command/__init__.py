@@ -10,7 +10,7 @@ import sys
 # name: (module, one line)
 SUBCOMMANDS = {
     "run": ("command.run", "runs all programs of a case"),
-    "exec": ("command.exec", "turns each process of a launcher of your own into a program of a case"),
+    "exec": ("command.exec", "turns each process of your own launcher into a program of a case"),
     "resume": ("command.resume", "continues a stopped run"),
     "stop": ("command.stop", "stops a run after the current step and writes a checkpoint"),
     "watch": ("command.watch", "shows the progress of a run"),
@@ -18,19 +18,16 @@ SUBCOMMANDS = {
     "check": ("command.check", "reports all errors of a case without running it"),
     "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
     "new": ("command.new", "creates a case of your own from an example"),
-    "import": (
-        "command.import_case",
-        "creates a case from a deck of CalculiX or Abaqus, or a configuration of preCICE",
-    ),
+    "import": ("command.import_case", "creates a case from a CalculiX or Abaqus deck, or from a preCICE configuration"),
     "gallery": ("command.gallery", "lists the example cases"),
     "docs": ("command.docs", "shows the documentation with search and a gallery of all cases"),
     "plot": ("plot", "plots the results of a run"),
-    "compare": ("command.compare", "lists the differences of two runs"),
+    "compare": ("command.compare", "lists the differences between two runs"),
     "study": ("study.main", "runs the study of a case: variants, error against time, optimization"),
     "mesh": ("command.mesh", "writes and checks partitionable meshes for very large cases"),
     "export": ("command.export", "writes results for VTK and meshio, or a case for CalculiX or OpenFOAM"),
     "weather": ("command.weather", "converts a weather file to the CSV that a tank reads"),
-    "validate": ("command.validate", "measures the acceptance tests of the project (in a checkout)"),
+    "validate": ("command.validate", "runs the acceptance tests of the project (in a checkout)"),
     "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
 GUIDE = (

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports every error in the keys and files of a case with file and line, without running it. All programs of the case
-check their part. What only the mesh shows (patches without an entry, places of probes, selections of faces) is checked
-at the start of the run. The exit code is 0 if there are no errors, and 2 otherwise."""
+"""Reports every error in the keys and files of a case with file and line, without running it. Each program of the
+case checks its own part. Errors that only the mesh reveals (patches without an entry, positions of probes, selections
+of faces) are found at the start of the run. The exit code is 0 if there are no errors, and 2 otherwise."""
 import pathlib
 import subprocess
 import sys

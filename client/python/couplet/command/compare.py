@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lists the differences between two runs: effective values, findings, one line for each table or file of fields with
-the largest difference and its place, and then the columns of tables and the fields. Their cost (seconds, iterations,
-logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1 otherwise."""
+the largest difference and its location, and then the columns of tables and the fields. Their cost (seconds,
+iterations, logs) is ignored. The exit code is 0 if everything else is equal bit for bit, or within --tolerance, and 1
+otherwise."""
 import argparse
 import math
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the documentation as a site with search and a gallery of all cases. Builds it once, then serves it on
+"""Shows the documentation as a site with search and a gallery of all cases. The site is built once and then served on
 localhost."""
 import functools
 import http.server
@@ -16,13 +16,11 @@ def declare(parser):
         "--build", type=pathlib.Path, metavar="FOLDER", help="builds the site into this folder and exits"
     )
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port on localhost (default: any free one)")
-    parser.add_argument("--again", action="store_true", help="builds it again even if it exists")
+    parser.add_argument("--again", action="store_true", help="rebuilds the site even if it exists")
     parser.add_argument(
         "--plots",
         action="store_true",
-        help=(
-            "builds it again with the plots of the validation studies and of the maps of stability, which takes minutes"
-        ),
+        help="rebuilds the site with the plots of the validation studies and the stability maps, which takes minutes",
     )
 
 

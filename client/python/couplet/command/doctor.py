@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores,
-memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line that
-fails names the fix."""
+memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line
+that fails states how to fix it."""
 import importlib.util
 import os
 import pathlib
@@ -51,7 +51,8 @@ def libraries():
     kept["precice_couplet"] = ("precice/lib/libprecice.so", "lib/couplet/precice/lib/libprecice.so")
     missing = [target for target, files in kept.items() if not any((places.build() / file).exists() for file in files)]
     yield "libraries", (
-        f"not there, needed by own C++ programs and those of preCICE: scripts/build release {' '.join(missing)}"
+        "missing, but needed by your own C++ programs and those on preCICE's interface: scripts/build release"
+        f" {' '.join(missing)}"
         if missing
         else "all there"
     ), True
@@ -68,7 +69,7 @@ def surroundings():
         needed for _, needed in missing
     )
     said = first_line("gmsh", "--version")
-    yield "gmsh", said or "not there: meshes from .geo need it (apt install gmsh)", True
+    yield "gmsh", said or "missing, but needed for meshes from .geo (apt install gmsh)", True
     cores = len(os.sched_getaffinity(0))
     yield "cores", f"{cores}, load {os.getloadavg()[0]:.1f}", True
     memory = re.findall(r"^(MemTotal|MemAvailable):\s+(\d+)", pathlib.Path("/proc/meminfo").read_text(), flags=re.M)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns this process into the program of the case that its rank belongs to, so that any launcher starts a coupled case
-as one application: `mpirun -n 5 couplet-exec case.yaml -n fluid=2`, or `srun --mpi=pmix --ntasks=5 couplet-exec
-case.yaml -n fluid=2`. The coupler has the first ranks, the participants follow in the order of the case, each with one
-rank unless -n gives it more."""
+"""Turns this process into the program of the case to which its rank belongs, so that any launcher starts a coupled
+case as one application: `mpirun -n 5 couplet-exec case.yaml -n fluid=2`, or `srun --mpi=pmix --ntasks=5 couplet-exec
+case.yaml -n fluid=2`. The coupler has the first ranks, and the participants follow in the order of the case, each
+with one rank unless -n gives it more."""
 import json
 import os
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists what a case computes (with --all, also what it neglects), its cells, the launch line, and the memory and time of
-the whole run, measured over its first seconds in a temporary folder."""
+"""Lists what a case computes (with --all, also what it neglects), its cells, the launch line, and the memory and time
+that the whole run needs, extrapolated from its first seconds, which are run in a temporary folder."""
 import shlex
 
 from couplet.command import check
@@ -19,12 +19,12 @@ def declare(parser):
 def price(case, sets):
     """Lines on the whole run: time, memory, and what limits its steps."""
     if guests := [name for name in case.participants if case.program(name).name not in OURS]:
-        return f"whole run:       not measured, since it takes the external participant '{guests[0]}'"
+        return f"whole run:       not measured, because it requires the external participant '{guests[0]}'"
     found = probe(case, [word for s in sets for word in ("--set", s)])
     if found.ended:
         took = f"{span(found.wall)}, measured"
     elif found.wall > 0:
-        took = f"about {span(found.wall)} on one rank for each program, judged by its first steps"
+        took = f"about {span(found.wall)} on one rank for each program, estimated from its first steps"
     else:
         return f"whole run:       not measured: {found.problem or f'no step within {LIMIT:g} s'}"
     return "\n".join(

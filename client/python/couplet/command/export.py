@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the fields of a run for other programs (--to vtk: .vtu files with a .pvd that lists them, for each
-participant), or a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM
-(incompressible, laminar flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key without a
-counterpart there is an error that names it. `couplet study --peers` runs both and compares them."""
+participant), or writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or
+OpenFOAM (incompressible, laminar flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). A key
+without a counterpart there is reported as an error. `couplet study --peers` runs both programs and compares them."""
 import pathlib
 import shutil
 import tempfile
@@ -53,7 +53,7 @@ def made(case, arguments, work):
     from couplet.peers.values import refuse
 
     names = [arguments.participant] if arguments.participant else list(case.participants)
-    expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")
+    expect(len(names) == 1, f"{case.file}: --participant: choose one of {', '.join(names)}")
     expect(names[0] in case.participants, f"{case.file}: there is no participant '{names[0]}'")
     data = with_changes(case.data, dict(s.split("=", 1) for s in arguments.set))
     program, common = str(data["participants"][names[0]].get("program")), (data, names[0], case.file.parent, work)
@@ -95,7 +95,7 @@ def run(arguments):
         expect(out.is_dir(), f"{out}: there is no such output folder; has the case been run?")
         lists = write(out, arguments.folder and new_folder(arguments.folder), arguments.participant)
         expect(lists, f"{out}: there are no field series ({arguments.participant or '*'}/*.h5) in it")
-        print("written, open in ParaView:", *lists, sep="\n  ")
+        print("written; open in ParaView:", *lists, sep="\n  ")
         return 0
     case = Case(arguments.case)
     folder = new_folder(arguments.folder or case.file.parent / arguments.to)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case from a deck of CalculiX or Abaqus, or from a configuration of preCICE. A deck (.inp) gives the mesh,
-materials, supports, loads and the first step of the case; all that is left out is listed with its line
-(docs/how-to/calculix-deck.md). A configuration (.xml) gives a job of programs that use preCICE's interface
+"""Creates a case from a CalculiX or Abaqus deck, or from a preCICE configuration. A deck (.inp) provides the mesh,
+materials, supports, loads and the first step of the case; everything that is left out is listed with its line
+(docs/how-to/calculix-deck.md). A configuration (.xml) yields a job of programs that use preCICE's interface
 (docs/precice.md). The programs still read the XML themselves. Differences are listed. If an element is not supported,
 it is named with its line, and no case is written (exit code 2)."""
 import pathlib
@@ -14,14 +14,14 @@ def declare(parser):
         "configuration",
         type=pathlib.Path,
         metavar="FILE",
-        help="a deck, .inp, or a configuration of preCICE, such as precice-config.xml",
+        help="a deck (.inp), or a preCICE configuration, such as precice-config.xml",
     )
     parser.add_argument(
         "-o",
         "--output",
         type=pathlib.Path,
         metavar="YAML",
-        help="case to write (default: beside the file, with its name and .yaml)",
+        help="case to write (default: next to the file, with the same name and the ending .yaml)",
     )
     parser.add_argument(
         "--units", choices=("si", "mm"), help="units of a deck: SI, or mm, N, tonne, s and MPa (default: si)"

@@ -30,7 +30,9 @@ def run(arguments):
     notes = [(plain(place), plain(text)) for place, text in said + physics.notes]
     if arguments.units is None:
         other = f"couplet import {deck} --units mm"
-        notes.append((plain(deck), f"numbers are taken as SI; if the deck is in mm, N, MPa: {plain(other)}"))
+        notes.append(
+            (plain(deck), f"numbers are taken as SI values; if the deck is in mm, N and MPa, run: {plain(other)}")
+        )
     notes = [f"{place}: {text}." for place, text in dict.fromkeys(notes)]
     print("".join(f"{note}\n" for note in notes), end="")
     if arguments.check:
@@ -44,7 +46,7 @@ def run(arguments):
     if not is_own:
         with files.part(output.parent, own_mesh) as made:
             mesh.write(made)
-        print(f"{output.parent / own_mesh}: the mesh of the deck, with the patches of its supports and loads")
+        print(f"{output.parent / own_mesh}: the mesh of the deck, with patches for its supports and loads")
     files.write(output.parent, output.name, "\n".join(lines))
     print(f"{output}: a case of solid_solver. couplet run {output} starts it")
     return 0

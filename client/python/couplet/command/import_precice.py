@@ -71,7 +71,7 @@ def run(arguments):
     expect(arguments.force or not output.exists(), f"{output}: the file exists; --force overwrites it.")
     text = text_of(found, file, output)
     expect(
-        not (problem := refusal(text)), f"{file}: the coupler would refuse the case of this configuration:\n{problem}"
+        not (problem := refusal(text)), f"{file}: the coupler would refuse a case with this configuration:\n{problem}"
     )
     files.write(output.parent, output.name, text)
     print(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes and checks cut meshes (NAME.h5) for cases that are too large for one process: each rank reads its share, on
-any number of ranks. 'cut SOURCE' converts the meshes of a case, or one mesh file, in one process that reads it as a
-whole. 'box' writes a box of hexahedra or tetrahedra in parallel. 'open SOURCE' opens a mesh as the programs do and
-prints time and memory."""
+"""Writes and checks cut meshes (NAME.h5) for cases that are too large for one process: any number of ranks can read
+such a mesh, each its own part. 'cut SOURCE' converts the meshes of a case, or one mesh file, in one process that
+reads it as a whole. 'box' writes a box of hexahedra or tetrahedra in parallel. 'open SOURCE' opens a mesh as the
+programs do and prints the time and memory required."""
 import pathlib
 import subprocess
 
@@ -28,7 +28,7 @@ def declare(parser):
         "--output",
         type=pathlib.Path,
         metavar="FILE.h5",
-        help="cut mesh to write (default for cut: beside the mesh, with its name)",
+        help="cut mesh to write (default for cut: next to the mesh, with the same name)",
     )
     parser.add_argument("--participant", metavar="NAME", help="cut: only the mesh of this participant")
     parser.add_argument(
@@ -133,7 +133,7 @@ def cut_case(arguments):
         shown = output.name if output.absolute().parent == case.file.absolute().parent else output
         for name in names:
             print(
-                f"to run from it: participants.{name}.mesh: {shown}"
+                f"to use it in a run, set: participants.{name}.mesh: {shown}"
                 + (", without mesh-parameters" if parameters else ""),
                 flush=True,
             )
@@ -149,7 +149,7 @@ def run(arguments):
     }
     allowed = {"cut": ("--output",), "box": tuple(given), "open": ()}[arguments.what]
     for option, value in given.items():
-        expect(value is None or option in allowed, f"couplet mesh {arguments.what}: {option} does not belong there")
+        expect(value is None or option in allowed, f"couplet mesh {arguments.what}: {option} is not an option of it")
     expect(
         arguments.ranks > 0 and (arguments.ranks == 1 or arguments.what != "cut"),
         "-n: cutting runs on one process; box and open on any number of ranks",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Creates a case of your own: copies an example case with all files that it names into a new folder. Comments and the
-order of keys are kept."""
+"""Creates a case of your own by copying an example case, with all files that it names, into a new folder. Comments
+and the order of keys are kept."""
 import pathlib
 import shlex
 
@@ -34,7 +34,7 @@ def run(arguments):
     }
     file = gallery.copy(gallery.find(arguments.source), arguments.folder, values)
     print(
-        f"{file}: a case like {arguments.source}. couplet check, explain and run take it: couplet run"
+        f"{file}: a copy of {arguments.source}. Use it with couplet check, explain or run: couplet run"
         f" {shlex.quote(str(file))}"
     )
     return 0

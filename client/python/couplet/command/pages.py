@@ -57,9 +57,7 @@ def of_subcommand(name, version):
 def of_command(version):
     items = [f".TP\n\\fBcouplet\\-{name}\\fR(1)\n{plain(text)}" for name, (_, text) in command.SUBCOMMANDS.items()]
     codes = command.GUIDE.partition("Exit codes")[2]
-    places = (
-        ".TP\n\\fBCOUPLET_BIN\\fR\nfolder bin/ of the programs, where another than the one beside the command is meant"
-    )
+    places = ".TP\n\\fBCOUPLET_BIN\\fR\nfolder bin/ of the programs, if it is not the one next to the command"
     return page(
         "couplet",
         "couples physics programs into one MPI job",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows what a run ended with: all results (probes and coefficients, then forces, then the rest), the estimated error
-and its parts, warnings, distance to the limits of stability, and costs."""
+"""Shows the outcome of a run: all results (probes and coefficients, then forces, then the rest), the estimated error
+and its parts, warnings, the distance to stability limits, and costs."""
 import pathlib
 import re
 import textwrap

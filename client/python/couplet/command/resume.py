@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and settings. A
-continued run equals the uninterrupted one bit for bit; on other ranks (-n), within the tolerance of the solvers."""
+continued run is bit-for-bit identical to an uninterrupted one; on a different number of ranks (-n), they agree within
+the tolerance of the solvers."""
 import os
 import pathlib
 import shlex
@@ -19,7 +20,7 @@ SHAPE = {"case": str, "ranks": dict, "sets": list, "flags": list, "with": dict} 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="RUN", help=RUN_HELP)
     parser.add_argument(
-        "-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"other ranks than before: {RANKS_HELP}"
+        "-n", "--ranks", action="append", default=[], metavar="NAME=N", help=f"new numbers of ranks: {RANKS_HELP}"
     )
     parser.add_argument(
         "--set",
@@ -41,7 +42,7 @@ def declare(parser):
         action="store_true",
         help=(
             "allows a .geo to run commands and write files, as the run was allowed to; give it again, because the"
-            " folder may be another's"
+            " folder may come from someone else"
         ),
     )
     parser.add_argument(
@@ -91,10 +92,7 @@ def run(arguments):
     expect(
         all(isinstance(record.get(key), kind) for key, kind in SHAPE.items())
         and all(isinstance(n, int) for n in record["ranks"].values()),
-        (
-            f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart"
-            f" {named / 'checkpoints'}"
-        ),
+        f"{folder / folders.RECORD}: is damaged. Continue with: couplet run CASE --restart {named / 'checkpoints'}",
     )
     file, found = pathlib.Path(os.path.normpath(folder / record["case"])), folders.checkpoints(folder)
     expect(
@@ -118,7 +116,7 @@ def run(arguments):
     end = None if arguments.print else finished_at(folder, Case(file), sets)
     if end is not None:  # the programs would start, make no step and overwrite the results with nothing
         line = f"couplet resume {shlex.quote(shown(named))} --set simulation.end-time='{1.5 * end:g} s'"
-        print(f"this run is finished (t = {end:g} s); to go on: {line}")
+        print(f"this run is finished (t = {end:g} s); to continue it: {line}")
         return 0
     for name in (
         [record["alone"]] if record["alone"] else case.participants

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a case: starts all its programs, as the YAML names them, in one job, shows their output, and reports at the end where the
-results are. The results equal those of the same line typed by hand (--print shows it), bit for bit. Ctrl-C stops the run after the
-current step, with a checkpoint; press it again to stop immediately."""
+"""Runs a case: starts all its programs in one job as the YAML file lists them, shows their output, and reports at the
+end where the results are. The results are bit-for-bit identical to those of the launch command typed by hand (--print
+shows it). Ctrl-C stops the run after the current step with a checkpoint; press it again to stop immediately."""
 import os
 import pathlib
 import shlex
@@ -14,7 +14,10 @@ from couplet.runs import folder as folders
 from couplet.runs.case import CONTROL, Case, expect, mapping_of
 from couplet.runs.job import Job, output_of
 
-RANKS_HELP = "ranks of participants (fluid=4,solid=2), or a total that is divided by measured work, or else by cells"
+RANKS_HELP = (
+    "ranks of participants (fluid=4,solid=2), or a total, which is divided by measured work or, without measurements,"
+    " by numbers of cells"
+)
 FLAGS = {"strict": "fails if the run warns about its own result; --strict=effects: also about neglected effects"}
 
 
@@ -43,7 +46,7 @@ def declare(parser):
             " over a network interface (tcp6: IPv6)"
         ),
     )
-    parser.add_argument("--print", action="store_true", help="prints the launch line without running it")
+    parser.add_argument("--print", action="store_true", help="prints the launch line without running the case")
     parser.add_argument(
         "--slurm",
         nargs="?",
@@ -75,7 +78,7 @@ def options_of_programs(parser):
     parser.add_argument(
         "--diagnostics",
         choices=("standard", "without-errors", "full"),
-        help="what the run checks about its own result; full: also searches that may take as long as a solve",
+        help="how thoroughly the run checks its own result; full includes searches that may take as long as a solve",
     )
     parser.add_argument(
         "--accept",
@@ -115,12 +118,14 @@ def ranks_of(words, case, here=True):
         if here:
             fit_total(int(words[0]))
         return divide(case, int(words[0]))
-    expect(all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for all together, or NAME=N")
+    expect(
+        all("=" in w for w in words), f"-n {','.join(words)}: expected one whole number for the whole job, or NAME=N"
+    )
     found = pairs(words, "-n")
-    expect(len(found) == len(words), f"-n {','.join(words)}: names a participant twice")
+    expect(len(found) == len(words), f"-n {','.join(words)}: a participant is named twice")
     expect(
         all(n.isdigit() and int(n) > 0 for n in found.values()),
-        f"-n {','.join(words)}: expected whole numbers from 1 on, such as -n fluid=4,solid=2",
+        f"-n {','.join(words)}: expected whole numbers of at least 1, such as -n fluid=4,solid=2",
     )
     return {name: int(n) for name, n in found.items()}
 
@@ -161,7 +166,7 @@ def batch_script(job, options):
         f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}
     ]
     for word in (*head, *options, *words):  # a line break would begin a command
-        expect(not CONTROL.search(word), f"{word!r}: contains a control character; a batch script cannot hold it.")
+        expect(not CONTROL.search(word), f"{word!r}: contains a control character; a batch script cannot contain it.")
     return "\n".join(
         [
             "#!/bin/bash",
@@ -300,7 +305,7 @@ def finish(job, code, picture):
     if any(
         "cannot start" in line for line in job.last
     ):  # errors of the case; it does not know others, such as of --restart
-        fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(
+        fix += f"; to list all errors of the file: couplet check {shlex.quote(shown(job.case.file))}" + "".join(
             f" --set {shlex.quote(s)}" for s in job.sets
         )
     left = f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}"

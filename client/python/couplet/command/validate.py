@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the acceptance tests of the project with the programs and tests of a checkout. Takes the options of
+"""Runs the acceptance tests of the project with the programs and tests of a checkout. Takes the options of
 scripts/validate."""
 import argparse
 import os

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts a weather file to the CSV that a thermocline reads (docs/input-data.md): EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS as CSV,
-and tables with other column names, units or separators. All may be compressed (.gz). The format is recognized by the first lines. 29 February
-is dropped, several records per hour are averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS
-gives instantaneous values in UTC, which become hourly means on the standard time of the longitude. Ranges, order and gaps of the result
-are checked by the program."""
+"""Converts a weather file to the CSV that a thermocline reads (docs/input-data.md): EnergyPlus (EPW), SAM or NSRDB,
+TMY3, the typical year of PVGIS as CSV, and tables with other column names, units or separators. All of them may be
+compressed (.gz). The format is recognized by the first lines. 29 February is dropped, several records per hour are
+averaged, codes for missing values become gaps, and without humidity the dew point is used. PVGIS gives instantaneous
+values in UTC, which become hourly means in the standard time of the longitude. The thermocline checks the ranges,
+order and gaps of the result."""
 import csv
 import gzip
 import math
@@ -73,7 +74,7 @@ def declare(parser):
         "--output",
         type=pathlib.Path,
         metavar="OUT.csv",
-        help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv beside FILE)",
+        help="CSV to write, compressed if its name ends in .gz (default: NAME_weather.csv next to FILE)",
     )
 
 
@@ -336,7 +337,7 @@ def pvgis(source, first, head):
     begin = hours[0][0]
     hours = [[begin + k, hours[(k - zone) % len(hours)][1]] for k in range(len(hours))]
     print(
-        f"the clock of {source.file.name} is UTC; that of the result is {zone:+d} h ahead, the standard time of its"
+        f"the times in {source.file.name} are UTC; those of the result are {zone:+d} h ahead, the standard time of its"
         " longitude"
     )
     return hours, [*site[:2], float(zone)], 60.0 * minutes[0]
@@ -388,7 +389,7 @@ def read(source):
     usual = {name: next(iter(units)) for name, (_, _, units) in QUANTITIES.items() if name != "p_Pa"}
     times = {cell.lower() for cell in source.cells(first) if cell.lower() in TIMES}
     source.expect(
-        times, first, "a column of the time is missing: month, day and hour, or time, or hour (of the year, from 0)."
+        times, first, "a time column is missing: month, day and hour, or time, or hour (of the year, from 0)."
     )
     if "time(utc)" in times:
         return ("PVGIS", *pvgis(source, first, Head(source, first, {**usual, "p_Pa": "pa"})))
@@ -424,7 +425,7 @@ def run(arguments):
     kind, hours, site, states = read(source)
     stem = re.sub(r"(\.csv|\.epw)?(\.gz)?$", "", arguments.file.name, flags=re.I)
     output = arguments.output or arguments.file.with_name(stem + "_weather.csv")
-    expect(not output.exists() or not output.samefile(arguments.file), f"-o: {output} is the file that is read")
+    expect(not output.exists() or not output.samefile(arguments.file), f"-o: {output} is the file to be converted")
     lines = [f"# weather from {arguments.file.name} ({kind})"]
     lines += [f"# {name}: {text_of(value)}" for name, value in zip(("latitude", "longitude", "time-zone"), site or ())]
     lines += [f"# states-at: {text_of(states)}", ",".join(["hour", *WRITTEN])]

@@ -36,7 +36,7 @@ def patch_of(physics, acting, keys):
         }
     for c in loads:
         if c.kind == "pressure" and normal is None:
-            physics.leave(c.block, f"the pressure on curved faces of '{c.name}'", "they have another condition, too")
+            physics.leave(c.block, f"the pressure on curved faces of '{c.name}'", "they also have another condition")
         elif c.kind == "pressure":
             if not follows:
                 physics.notes.append((c.block.place, f"the pressure on '{c.name}' keeps its direction, as in CalculiX"))
@@ -58,7 +58,7 @@ def material_of(physics, name, block, knows_heat):
         is_free = not has_mass and (not physics.modes or physics.procedure == "BUCKLE")
         expect(is_free, f"{block.place}: the *MATERIAL '{own['name']}' needs *DENSITY for this step.")
         physics.notes.append(
-            (block.place, f"'{own['name']}' has no *DENSITY; {DENSITY} is written, which changes nothing here")
+            (block.place, f"'{own['name']}' has no *DENSITY; {DENSITY} is written, which has no effect here")
         )
     keys = {"density": own.get("density", DENSITY)}
     if physics.procedure != "HEAT TRANSFER":
@@ -111,8 +111,8 @@ def case_of(physics, name, mesh_file):
     expect(
         physics.procedure,
         (
-            f"{physics.name}: there is nothing to run: no *STEP has one of {known}. The deck may still be the mesh of a"
-            " case of your own (docs/how-to/own-mesh.md)."
+            f"{physics.name}: there is nothing to run: no *STEP contains one of {known}. The deck can still serve as"
+            " the mesh of a case of your own (docs/how-to/own-mesh.md)."
         ),
     )
     is_hot, moves = physics.procedure in HEAT, physics.procedure != "HEAT TRANSFER"
@@ -166,8 +166,10 @@ def unit_of_temperature(physics):
     low, zero = min(physics.temperatures, default=0), physics.absolute_zero
     unit = "K" if zero == 0 or zero is None and low >= 70 else "degC"
     if physics.temperatures and zero not in (0, -273.15):
-        how = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15 (degC) or 0 (K) would decide"
-        physics.notes.append((physics.name, f"temperatures are taken in {unit}, as the lowest is {low:g}; {how}"))
+        how = "*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15 (degC) or 0 (K) would determine it"
+        physics.notes.append(
+            (physics.name, f"temperatures are taken to be in {unit}, because the lowest is {low:g}; {how}")
+        )
     return unit
 
 

@@ -88,7 +88,8 @@ class Physics:
         return {"degrees": value}
 
     def over_time(self, block, value, kind):
-        """A value by its *AMPLITUDE: over time where the case has steps, else as it is at the end."""
+        """Scales a value by its *AMPLITUDE: as a function of time if the case has time steps, otherwise by the amplitude at
+        the end."""
         name = block.values.get("AMPLITUDE", "").upper()
         expect(not name or name in self.amplitudes, f"{block.place}: there is no *AMPLITUDE '{name}' before this line.")
         curve = self.amplitudes.get(name) or (
@@ -165,7 +166,7 @@ class Physics:
         means, at = self.columns(block)
         zero, slopes, places = real(block.values.get("ZERO") or "0", block.place), means[:1], at[:1]
         for a, b, t, u in zip(means, means[1:], at, at[1:]):
-            expect(t < u, f"{block.place}: the temperatures of *EXPANSION must grow.")
+            expect(t < u, f"{block.place}: the temperatures of *EXPANSION must increase.")
             places += [t + 1e-6 * (u - t), u - 1e-6 * (u - t)]
             slopes += [a + (b - a) / (u - t) * (t - zero), b + (b - a) / (u - t) * (u - zero)]
         if len(at) > 1:
@@ -174,7 +175,9 @@ class Physics:
 
     def plastic(self, block):
         self.material["yield-strength"] = self.si(self.columns(block)[0][0], "stress")
-        self.leave(block, "*PLASTIC", "Couplet has no plasticity; the run reports where the first stress is reached")
+        self.leave(
+            block, "*PLASTIC", "Couplet has no plasticity; the run reports where the first yield stress is reached"
+        )
 
     def section(self, block):
         expect(block.values.get("MATERIAL"), f"{block.place}: *SOLID SECTION needs MATERIAL=...")
@@ -196,7 +199,9 @@ class Physics:
                 or self.is_large
             ):
                 return self.leave(
-                    self.step, f"the *STEP with *{block.word}", f"a case has one step, that with *{self.procedure}"
+                    self.step,
+                    f"the *STEP with *{block.word}",
+                    f"a case has only one step, the one with *{self.procedure}",
                 )
             self.modes = int(block.number(0))
             return self.notes.append(
@@ -213,7 +218,7 @@ class Physics:
             self.dt = block.number(0, self.end if block.word == "STATIC" else None)
             if block.word == "STATIC":
                 self.dt = max(self.dt, self.end / 10)
-            expect(0 < self.dt <= self.end, f"{block.place}: *{block.word} needs a time step and an end after it.")
+            expect(0 < self.dt <= self.end, f"{block.place}: *{block.word} needs a time step, followed by an end time.")
 
     # -- supports and loads --------------------------------------------------------------------------------------------
     def act(self, kind, name, block, faces, value):
@@ -264,7 +269,7 @@ class Physics:
         rest = len(points) - len({p for key in faces for p in key})
         if rest or not faces:
             what = f"*{line.word} of {rest} of the {len(points)} nodes of '{name}'"
-            self.leave(line, what, "conditions act on faces, and no boundary face has all its corners there")
+            self.leave(line, what, "conditions act on faces, but no boundary face has all its corners there")
         return faces
 
     def distributed(self, block):
@@ -283,7 +288,7 @@ class Physics:
                 why = (
                     "Couplet has no counterpart"
                     if not kind
-                    else "no boundary face is there" if on_faces else "it acts on a part"
+                    else "there is no boundary face" if on_faces else "it acts on a part"
                 )
                 self.leave(line, f"*{block.word} {label[:20]} of '{target[:60]}'", why)
                 continue
@@ -316,7 +321,7 @@ class Physics:
             elif faces and len({p for key in faces for p in key}) == len(points):
                 self.act("force", name, line, faces, tuple(f * len(nodes) for f in force))
                 self.notes.append(
-                    (line.place, f"the force of {len(nodes)} nodes of '{name}' is spread evenly over their faces")
+                    (line.place, f"the force of {len(nodes)} nodes of '{name}' is distributed evenly over their faces")
                 )
             elif len(self.point_loads) + len(nodes) <= MOST_FORCES and self.plane != "axisymmetric":
                 self.point_loads += [
@@ -332,7 +337,7 @@ class Physics:
             self.mesh.point_of
         ):
             return self.degrees(found[0][0])
-        self.leave(block, f"*{block.word}", f"it is not one value of all nodes; {EXPRESSION}")
+        self.leave(block, f"*{block.word}", f"it is not a single value for all nodes; {EXPRESSION}")
 
     def initial_conditions(self, block):
         if block.values.get("TYPE", "").upper() == "TEMPERATURE":

@@ -33,7 +33,7 @@ Each program prints the reference of its keys. `couplet docs` shows them as page
 """
 HEAD_END = """
 Numbers with a unit may use any unit of the same kind: `5.6 MPa`, `20 ms`, `1e-3 m^2/s`, `80 mmHg`, `10 cmH2O`, `30 psi`, `1 atm`, `29 inHg`, `3.5 cP`, `68 degF`. A plain number is in the unit of the table. The
-column *allowed* also has the usual magnitudes, beyond which a value is reported ([quantities](quantities.md)). Editors with JSON schema support
+column *allowed* also lists the usual magnitudes; a value outside them is reported ([quantities](quantities.md)). Editors with JSON schema support
 can use `build/docs/schema/case.json`, which `scripts/docs keys` writes, or `share/couplet/docs/schema/case.json` of an installation.
 
 """

@@ -99,7 +99,7 @@ def shared(schema):
 # -- the section `study` -----------------------------------------------------------------------------------------------
 CHANGES = {
     "type": ["object", "null"],
-    "description": "keys and their values; they start at the participant unless they begin with a section",
+    "description": "keys and their values; a key is relative to the participant unless it begins with a section",
 }
 
 
@@ -271,7 +271,7 @@ def case_schema(programs, simulation):
             "coupling": {"$ref": "coupler.json"},
             "study": STUDY,
             "plot": PLOT,
-            "case": {"type": "string", "description": "another case file whose study this is"},
+            "case": {"type": "string", "description": "another case file to which this study belongs"},
         },
         "additionalProperties": False,
     }

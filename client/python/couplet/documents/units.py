@@ -41,7 +41,7 @@ def raised(pattern, power):
 
 
 def pattern_of(unit, table):
-    """Regular expression for the text behind the number."""
+    """Regular expression for the unit that follows the number."""
     wanted, classes = dimension_of(unit, table), {}
     for name, (_, dimension) in table.items():
         if not (unit == "K difference" and name in ("degC", "degF")):

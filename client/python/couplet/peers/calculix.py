@@ -46,7 +46,7 @@ class Input:
         if order is None:
             refuse(
                 "--element",
-                f"'{element}' does not fit the cells of the mesh; {', '.join(k for k, _ in kinds(solid))} do",
+                f"'{element}' does not fit the cells of the mesh; use one of {', '.join(k for k, _ in kinds(solid))}",
             )
         self.flat = solid.mesh(order)
         self.layer = solid.dimension == 2 and element.startswith("C3D")

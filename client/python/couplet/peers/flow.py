@@ -50,7 +50,7 @@ class Flow:
             if kind not in PATCHES:
                 refuse(
                     f"{where}.type",
-                    f"'{kind}' has no counterpart in the exported OpenFOAM case; {', '.join(PATCHES)} have",
+                    f"'{kind}' has no counterpart in the exported OpenFOAM case; only {', '.join(PATCHES)} have one",
                 )
             only(given, where, PATCHES[kind] | {"type"}, "the exported OpenFOAM case")
             if given.get("profile", "uniform") != "uniform":
@@ -138,7 +138,10 @@ class FlowCase:
         if fastest == 0 and self.program == "icoFoam":
             refuse(
                 f"{self.flow.where}.boundaries",
-                "icoFoam's step is chosen by a prescribed velocity, and there is none; pimpleFoam chooses its own",
+                (
+                    "the step of icoFoam is chosen from a prescribed velocity, but there is none; pimpleFoam chooses"
+                    " its own step"
+                ),
             )
         step = COURANT * self.flow.mesh()[0].size() / (FASTER * fastest) if fastest > 0 else self.flow.end / 1000
         return max(1, int(np.ceil(self.flow.end / step)))

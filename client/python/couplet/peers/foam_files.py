@@ -53,8 +53,8 @@ class PolyMesh:
                 refuse(
                     f"boundaries.{patch}",
                     (
-                        "this name is no word of OpenFOAM's dictionaries; rename the patch with letters, digits, '_',"
-                        " '-' and '.'"
+                        "this name is not a valid word in OpenFOAM's dictionaries; rename the patch with letters,"
+                        " digits, '_', '-' and '.'"
                     ),
                 )
         faces, cells, centres = self.all_faces()

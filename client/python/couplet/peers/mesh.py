@@ -246,7 +246,7 @@ def read(file, dimension, scale=1.0):
         if where is not None:
             where.setdefault(shape, []).append(number_of[rows])
     expect(cells, f"{file}: there are no cells of dimension {dimension} in it")
-    expect(len(orders) == 1, f"{file}: cells of first and second order beside each other cannot be exported")
+    expect(len(orders) == 1, f"{file}: a mix of cells of first and second order cannot be exported")
     cells = {s: np.vstack(c) for s, c in cells.items()}
     patches = {p: {s: np.vstack(f) for s, f in faces.items()} for p, faces in patches.items()}
     order = orders.pop()

@@ -39,11 +39,12 @@ class Solid:
         if s.get("analysis", "dynamic") != "static":
             refuse(
                 f"{self.where}.analysis",
-                f"'{s.get('analysis', 'dynamic')}' is not exported to {self.program}; static is",
+                f"'{s.get('analysis', 'dynamic')}' is not exported to {self.program}; only static is",
             )
         if s.get("kinematics", "small-strain") != "small-strain":
             refuse(
-                f"{self.where}.kinematics", f"'{s['kinematics']}' is not exported to {self.program}; small-strain is"
+                f"{self.where}.kinematics",
+                f"'{s['kinematics']}' is not exported to {self.program}; only small-strain is",
             )
         if not isinstance(s.get("material"), dict):
             refuse(f"{self.where}.material", "is needed")
@@ -59,7 +60,7 @@ class Solid:
             if kind not in PATCHES:
                 refuse(
                     f"{self.where}.boundaries.{patch}.type",
-                    f"'{kind}' has no counterpart in {self.program}; {', '.join(PATCHES)} have",
+                    f"'{kind}' has no counterpart in {self.program}; only {', '.join(PATCHES)} have one",
                 )
             only(given, f"{self.where}.boundaries.{patch}", PATCHES[kind] | {"type"}, self.program)
 
@@ -85,7 +86,10 @@ class Solid:
         points = body.points[body.nodes_of(patch)]
         spread = np.ptp(points, axis=0)[: self.dimension]
         if spread.min() > 1e-9 * np.ptp(body.points, axis=0).max():
-            refuse(f"{self.where}.boundaries.{patch}.type", "a symmetry plane across no axis is not exported")
+            refuse(
+                f"{self.where}.boundaries.{patch}.type",
+                "a symmetry plane that is not perpendicular to an axis is not exported",
+            )
         return int(np.argmin(spread))
 
     def prescribed(self, body):

@@ -108,7 +108,7 @@ def settled(data):
         refuse(
             "simulation.effects",
             (
-                f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects"
-                " that it chose"
+                f"'{data['simulation']['effects']}' lets the program choose what is solved; export the case with the"
+                " effects that it chose"
             ),
         )

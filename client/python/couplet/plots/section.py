@@ -168,7 +168,9 @@ def follow(value, schema, where):
         for i, item in enumerate(value):
             follow(item, schema["items"], f"{where}[{i}]")
     elif "minimum" in schema:
-        expect(value >= schema["minimum"], f"{where}: expected a number from {schema['minimum']} on, found {value}.")
+        expect(
+            value >= schema["minimum"], f"{where}: expected a number of at least {schema['minimum']}, found {value}."
+        )
 
 
 def seconds(value, where):
@@ -193,7 +195,7 @@ def check(case):
     )
     expect(
         "/" not in file and file.endswith(".png"),
-        f"{place}.file: '{file}'; expected a name that ends in .png: it lies in the output folder.",
+        f"{place}.file: '{file}'; expected a name that ends in .png: it is written to the output folder.",
     )
     for i, panel in enumerate(section["panels"]):
         where = f"{place}.panels[{i}]"
@@ -219,7 +221,7 @@ def check(case):
             )
             expect(
                 sources[0] in ("function", "points", "levels") or "y" in curve,
-                f"{where}.curves[{j}]: the key 'y' is missing: a column, or an expression.",
+                f"{where}.curves[{j}]: the key 'y' is missing; give a column or an expression.",
             )
             seconds(curve.get("at"), f"{where}.curves[{j}].at")
             expect(
@@ -230,8 +232,8 @@ def check(case):
                 expect(
                     function and (case.file.parent / file).is_file() and "/" not in file,
                     (
-                        f"{where}.curves[{j}].python: '{curve['python']}'; expected such as 'FILE.py: FUNCTION' of a"
-                        " file beside the case."
+                        f"{where}.curves[{j}].python: '{curve['python']}'; expected 'FILE.py: FUNCTION', with a file"
+                        " next to the case."
                     ),
                 )
             expect(

@@ -60,7 +60,7 @@ def plane_of(text, where):
         level = float(level)
     except ValueError:
         level = np.nan
-    expect(axis in ("x", "y", "z") and np.isfinite(level), f"{where}: '{text}'; expected such as y = 0.")
+    expect(axis in ("x", "y", "z") and np.isfinite(level), f"{where}: '{text}'; expected a plane such as y = 0.")
     return "xyz".index(axis), level
 
 

@@ -40,7 +40,7 @@ class Import:
         """Checks a single element."""
         name = element.name
         if key := listed(name, REFUSED):
-            self._refuse(element, f"<{name}> is not supported: {REFUSED[key]}")
+            self._refuse(element, f"<{name}> ({REFUSED[key]}) is not supported")
         elif key := listed(name, WITHOUT_EFFECT):
             self._note(element, f"<{name}> has no effect here: {WITHOUT_EFFECT[key]}")
         elif name in MAPPED or name.startswith("mapping:rbf"):
@@ -100,7 +100,7 @@ class Import:
                 if e.get("name") in data and not any(
                     (x.get("data"), x.get("to")) == (e.get("name"), p.get("name")) for x in exchanges
                 ):
-                    self._refuse(e, f"'{p.get('name')}' reads '{e.get('name')}', but no <exchange> brings it there")
+                    self._refuse(e, f"'{p.get('name')}' reads '{e.get('name')}', but no <exchange> delivers it")
 
     # -- the scheme ---------------------------------------------------------------------------------------------------
     def _scheme(self):
@@ -182,27 +182,27 @@ class Import:
                 limits.append(self._limit(m, "limit" if kind == "relative" else "rel-limit"))
             if kind != "relative":
                 absolute.append(self._limit(m, "limit" if kind == "absolute" else "abs-limit"))
-                self._note(m, f"<{m.name}> is judged by the root mean square over the vertices")
+                self._note(m, f"<{m.name}> is evaluated as the root mean square over the vertices")
         if len(set(limits)) > 1 or len(set(absolute)) > 1:
-            self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
+            self._note(measures[0], "one limit, the strictest, applies to all data that are iterated")
         if not measures:
             self._note(
                 scheme,
                 (
-                    "without a convergence measure each window takes max-iterations, and that it has not converged is"
-                    " accepted"
+                    "without a convergence measure, each window takes max-iterations iterations and is accepted"
+                    " unconverged"
                 ),
             )
             self.case["simulation"]["accept"] = ["error-estimate", "unconverged-step"]
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
         if absolute and limits and any(not m.name.startswith("absolute-or") for m in measures):
-            self._note(measures[0], "of relative and absolute limits, the relative one decides")
+            self._note(measures[0], "if relative and absolute limits are given, the relative one applies")
         elif absolute:
             coupling["convergence"]["absolute"] = f"{min(absolute):g} m"
         if (most := self._count(scheme.one("max-iterations"))) is not None:
             coupling["convergence"] |= {"max-iterations": most, "at-max-iterations": "accept"}
         else:
-            self._note(scheme, "without max-iterations a window ends after 10000")
+            self._note(scheme, "without max-iterations, a window ends after 10000 iterations")
             coupling["convergence"]["max-iterations"] = 10000
         if (least := self._count(scheme.one("min-iterations"))) is not None and least > 1:
             self._note(scheme, "min-iterations has no effect: a window ends when it has converged")
@@ -252,7 +252,7 @@ class Import:
             if f.get("type") != "QR2":
                 self._note(f, f"the filter {f.get('type')} is taken as QR2: a column goes by its own size")
         if kind == "IQN-IMVJ":
-            self._note(a, "IQN-IMVJ is taken as IQN-ILS, which needs fewer iterations here")
+            self._note(a, "IQN-ILS replaces IQN-IMVJ, because it needs fewer iterations here")
         coupling["acceleration"] = values
 
     # -- maps ---------------------------------------------------------------------------------------------------------
@@ -267,5 +267,5 @@ class Import:
             return
         kind = max(kinds, key=lambda k: k[1])
         if len(kinds) > 1:
-            self._note(kinds[kind], f"maps of several kinds: all go by '{kind[0]}'")
+            self._note(kinds[kind], f"mappings of several kinds: all of them use '{kind[0]}'")
         self.case.setdefault("coupling", {})["mapping"] = {"type": kind[0]}

@@ -35,7 +35,9 @@ def read(file):
     """Reads the outermost element. Document types (and thus entities) are rejected."""
     expect(file.is_file(), f"{file}: this file does not exist.")
     data = file.read_bytes()
-    expect(len(data) <= LARGEST, f"{file}: {len(data)} bytes are no configuration of preCICE (at most {LARGEST}).")
+    expect(
+        len(data) <= LARGEST, f"{file}: {len(data)} bytes are too many for a preCICE configuration (at most {LARGEST})."
+    )
     parser, stack, roots = xml.parsers.expat.ParserCreate(), [], []
 
     def begin(name, attributes):
@@ -49,7 +51,7 @@ def read(file):
         )
 
     def document_type(*_):
-        expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not read.")
+        expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not supported.")
 
     parser.StartElementHandler, parser.EndElementHandler = begin, lambda _: stack.pop()
     parser.StartDoctypeDeclHandler = document_type
@@ -59,10 +61,7 @@ def read(file):
         expect(False, f"{file}:{error.lineno}: {xml.parsers.expat.errors.messages[error.code]}.")
     expect(
         roots[0].name == "precice-configuration",
-        (
-            f"{file}:{roots[0].line}: <precice-configuration> of preCICE's version 3 is expected, this is"
-            f" <{roots[0].name}>."
-        ),
+        f"{file}:{roots[0].line}: expected <precice-configuration> of preCICE version 3, but found <{roots[0].name}>.",
     )
     return roots[0]
 
@@ -144,21 +143,21 @@ SILENT |= {
 }
 # Elements without influence on the answer, and their replacements.
 WITHOUT_EFFECT = {
-    "export:": "every program writes its own fields, and `coupling.watch` has integrals",
-    "watch-point": "no watch at a point: `coupling.watch` has integrals",
-    "watch-integral": "`coupling.watch` has integrals over interfaces",
-    "preconditioner": "data of several kinds are scaled once by their first size",
-    "basis-function:": "`projection` takes a local interpolant where a mesh has no faces",
+    "export:": "every program writes its own fields, and `coupling.watch` computes integrals",
+    "watch-point": "points cannot be watched, but `coupling.watch` computes integrals",
+    "watch-integral": "`coupling.watch` computes integrals over interfaces",
+    "preconditioner": "data of several kinds are scaled once, by their initial magnitude",
+    "basis-function:": "`projection` uses a local interpolant where a mesh has no faces",
 }
 # Elements that the library and the coupler do not support.
 REFUSED = {
     "action:": "actions on data",
     "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
     "residual-relative-convergence-measure": "convergence against the first residual of a window",
-    "min-iteration-convergence-measure": "a least number of iterations",
-    "coupling-scheme:compositional": "schemes composed by hand",
+    "min-iteration-convergence-measure": "a minimum number of iterations",
+    "coupling-scheme:compositional": "schemes that are composed by hand",
     "acceleration:broyden": "Broyden's acceleration",
-    "extrapolation-order": "extrapolation of preCICE's version 2",
+    "extrapolation-order": "extrapolation of preCICE version 2",
 }
 
 

@@ -152,7 +152,7 @@ class Case:
             unknown = set(self.data) - {"case", "study"}
             expect(
                 not unknown,
-                f"{self.file}: unknown key '{next(iter(unknown), '')}'; beside 'case' there is only 'study'.",
+                f"{self.file}: unknown key '{next(iter(unknown), '')}'; besides 'case', only 'study' is allowed.",
             )
             self.file = self.file.parent / str(self.data["case"])
             expect(self.file.is_file(), f"{self.asked}: case: {self.file} does not exist.")

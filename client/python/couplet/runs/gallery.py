@@ -113,7 +113,7 @@ def with_values(text, values):
     """Replaces the values at existing keys. Comments and order are kept."""
     places = dict(scalars(yaml.compose(text)))
     for key in values:
-        expect(key in places, f"--set {key}: the case has no such value to replace; give it in the new file")
+        expect(key in places, f"--set {key}: the case has no such value to replace; set it in the new file")
     spots = {
         (places[key].start_mark.index, places[key].end_mark.index): value for key, value in values.items()
     }  # an anchor has several keys

@@ -95,8 +95,8 @@ class Job:
             expect(
                 program.name in OURS and program.exists() or case.guest(name, self.played_by),
                 (
-                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} and not beside"
-                    f" the case. Give its command: --with {name}='COMMAND ...'"
+                    f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent} nor next to the"
+                    f" case. Give its command: --with {name}='COMMAND ...'"
                 ),
             )
         self.output = output_of(case, self.sets)

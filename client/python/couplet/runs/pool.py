@@ -27,7 +27,7 @@ def run_all(tasks, jobs=1, again=False, say=print):
             )
             say(
                 f"[{len(records)}/{len(tasks)}] {task.name}: {record.reason or word}"
-                + (f" (about {rest:.0f} s to go)" if rest > 10 else "")
+                + (f" (about {rest:.0f} s left)" if rest > 10 else "")
             )
 
     def worker():

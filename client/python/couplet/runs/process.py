@@ -109,7 +109,7 @@ def launch(command, log, folder=None, timeout=3600, env=None):
     wall = time.monotonic() - start
     code = os.waitstatus_to_exitcode(status)
     if late:
-        raise RunFailed(f"not at its end after {timeout:g} s")
+        raise RunFailed(f"not finished after {timeout:g} s")
     if code != 0:
         raise RunFailed(f"exit code {code}: {last_words(log.read_text(errors='replace'))} (see {log})")
     return Cost(wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
@@ -201,7 +201,4 @@ def culprit(killed, sizes):
     who, rank, ranks = owner(rank, sizes)
     if who is None:
         return f"a process was ended by signal {number}"
-    return (
-        f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal"
-        f" {number}{f' ({name})' if name else ''}"
-    )
+    return f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal {number}{f' ({name})' if name else ''}"

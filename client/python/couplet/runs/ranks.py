@@ -69,9 +69,9 @@ def fit_total(total):
     expect(
         total <= MOST_PER_CORE * cores,
         (
-            f"{total} processes on {cores} cores would hardly advance, since each polls for its messages: at most"
-            f" {MOST_PER_CORE * cores} here. On several machines use --slurm, or name their file in"
-            " OMPI_MCA_orte_default_hostfile"
+            f"{total} processes on {cores} cores would make almost no progress, because each one polls for messages;"
+            f" use at most {MOST_PER_CORE * cores} on this machine. On several machines use --slurm, or name their file"
+            " in OMPI_MCA_orte_default_hostfile"
         ),
     )
 

@@ -71,7 +71,10 @@ def axis_of(name, given, where):
     unknown = set(given) - {"key", "values", "sizes", "set", "ranks", "multiple"}
     expect(
         not unknown,
-        f"{where}: unknown key '{next(iter(unknown), '')}'; valid are key, values, sizes, set, multiple, ranks.",
+        (
+            f"{where}: unknown key '{next(iter(unknown), '')}'; valid keys are key, values, sizes, set, multiple and"
+            " ranks."
+        ),
     )
     if "sizes" in given:
         expect(
@@ -96,7 +99,7 @@ def axis_of(name, given, where):
             return Axis(name, {label_of(k): {given["key"]: v} for k, v in values.items()}, {}, {}, {})
         expect(
             all(isinstance(v, dict) or v is None for v in values.values()),
-            f"{where}: values: expected keys and values by name.",
+            f"{where}: values: each name must map to keys and their values, such as {{fine: {{mesh.n: 40}}}}.",
         )
         return Axis(name, {label_of(k): dict(v or {}) for k, v in values.items()}, {}, {}, {})
     expect(
@@ -234,7 +237,7 @@ def evaluate(text, names, functions=()):
                 raise ValueError("'*' before an argument")
             return functions[node.func.id](*map(value, node.args))
         raise ValueError(
-            f"'{ast.unparse(node)[:60]}'; valid are numbers, + - * / ^, comparisons and"
+            f"'{ast.unparse(node)[:60]}' is not allowed here; use numbers, + - * / ^, comparisons and"
             f" {', '.join([*names, *functions])}"
         )
 

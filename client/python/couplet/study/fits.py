@@ -198,7 +198,7 @@ def of_values(sizes, values, formal=2.0):
     """Returns (Fit, "") of a series with unknown limit, or (None, reason)."""
     n, values = np.array(sizes, float), np.array(values, float)
     if len(n) < 3:
-        return None, f"{len(n)} run{'s' if len(n) != 1 else ''} show no order, three are needed"
+        return None, f"{len(n)} run{'s' if len(n) != 1 else ''} show no order; three are needed"
     if np.ptp(values) <= TIE * np.abs(values).max():  # equal values show no change
         return Fit(float(values[-1]), [(0.0, formal)], float(np.ptp(values)), SAFETY, 0.0, len(n)), ""
     reason = diverges(n, values)
@@ -232,7 +232,7 @@ def of_errors(sizes, errors, formal=2.0):
     """Returns (Fit, "") of a series with known (signed or unsigned) errors, or (None, reason): a power law of the
     finest three or four runs."""
     if len(sizes) < 2:
-        return None, "one run shows no order, two are needed"
+        return None, "one run shows no order; two are needed"
     if not any(errors):
         return Fit(0.0, [(0.0, formal)], 0.0, 1.0, 0.0, len(sizes)), ""
     n, e = np.array(sizes, float)[-LEAST:], np.array(settled(sizes, errors, formal))[-LEAST:]
@@ -245,7 +245,7 @@ def of_errors(sizes, errors, formal=2.0):
             break
     order = min(-float(minus), formal + 1)
     if order < KNOWN_LOWEST:
-        return None, f"its error does not fall with size ({e[-2]:.2g}, then {e[-1]:.2g})"
+        return None, f"its error does not decrease with size ({e[-2]:.2g}, then {e[-1]:.2g})"
     level = max(level, math.log(e[-1]))  # at least through the finest
     return (
         Fit(0.0, [(math.exp(level) * float(n[-1]) ** order, order)], 0.0, 1.0, 0.0, count, math.exp(min(scatter, 1.0))),

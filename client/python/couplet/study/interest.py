@@ -183,9 +183,7 @@ def run(case, out, arguments, say):
         if section.get("sources")
         else ()
     )
-    expect(
-        not taken, f"{case.file}: --quantities: --set {next(iter(taken), '')}: study.sources gives it its own values."
-    )
+    expect(not taken, f"{case.file}: --quantities: --set {next(iter(taken), '')}: study.sources sets this key itself.")
     folder, tasks = files.below(out, "quantities"), {}
     for name, factors in runs_of(sources).items():
         changes = {

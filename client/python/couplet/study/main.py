@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the section `study` of a case and reports the result: named variants with their summaries in one table, axes
-with error against time, or the best of some variables. An interrupted study continues where it stopped, and two at once
-share their work. docs/studies.md describes the section."""
+with the error against time, or the best values of some variables. An interrupted study continues where it stopped,
+and two that run concurrently share the work. docs/studies.md describes the section."""
 import fnmatch
 import os
 import pathlib
@@ -57,7 +57,7 @@ def run_variants(cases, arguments):
     failed = sum(record.state != "done" for record in records.values())
     print(
         f"{len(runs) - failed} of {len(runs)} variants in {time.monotonic() - start:.1f} s, {jobs} at a time; "
-        f"one after the other they take {sum(r.wall for r in records.values()):.1f} s"
+        f"one after another they would take {sum(r.wall for r in records.values()):.1f} s"
     )
     return 1 if failed else 0
 
@@ -124,7 +124,7 @@ def declare(parser):
         "--out",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="folder for runs and tables (default: out/study or out/optimise beside the case)",
+        help="folder for runs and tables (default: out/study or out/optimise next to the case)",
     )
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="folder whose bin/ contains the programs")
     parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
@@ -133,7 +133,7 @@ def declare(parser):
         "--publish",
         type=pathlib.Path,
         metavar="FOLDER",
-        help="copies the report without its plots and the tables to this folder",
+        help="copies the report (without its plots) and the tables to this folder",
     )
     parser.add_argument("--again", action="store_true", help="repeats runs even if results exist")
     parser.add_argument(
@@ -166,7 +166,7 @@ def declare(parser):
         help=(
             "estimates the errors of the study's quantities for the case as it is, from runs with a half and a quarter"
             " of the cells along each line, with two and four times the step, and with tighter tolerances (section"
-            " `sources`), and names the dominant one"
+            " `sources`), and names the dominant contribution"
         ),
     )
     parser.add_argument("--optimise", action="store_true", help="finds the best values of some variables in few runs")

@@ -105,8 +105,9 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
         quiet = quiet + 1 if best - wanted <= tolerance * abs(best) else 0
         if quiet > 2:
             say(
-                f"optimise: ends after {len(points)} of {runs} runs: three times in a row nothing better by more than "
-                f"{tolerance:.2g} of it was expected (study.optimise.tolerance); a smaller tolerance looks further"
+                f"optimise: ends after {len(points)} of {runs} runs: three times in a row, no improvement by more than"
+                f" a fraction of {tolerance:.2g} was expected (study.optimise.tolerance); a smaller tolerance looks"
+                " further"
             )
             break
         if not todo:
@@ -130,7 +131,10 @@ class Variable:
         place = f"{place}.{name}"
         expect(isinstance(spec, dict), f"{place}: expected {{from: ..., to: ...}}.")
         unknown = set(spec) - {"key", "from", "to", "unit", "sets"}
-        expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are key, from, to, unit, sets.")
+        expect(
+            not unknown,
+            f"{place}: unknown key '{next(iter(unknown), '')}'; valid keys are key, from, to, unit and sets.",
+        )
         low, high = spec.get("from"), spec.get("to")
         expect(
             is_number(low) and is_number(high) and low < high,
@@ -167,8 +171,8 @@ class Search:
         expect(
             not unknown,
             (
-                f"{place}: unknown key '{next(iter(unknown), '')}'; valid are minimise, maximise, runs, tolerance,"
-                " variables, set."
+                f"{place}: unknown key '{next(iter(unknown), '')}'; valid keys are minimise, maximise, runs, tolerance,"
+                " variables and set."
             ),
         )
         expect(("minimise" in section) != ("maximise" in section), f"{place}: give either 'minimise' or 'maximise'.")

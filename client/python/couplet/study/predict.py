@@ -30,7 +30,7 @@ FREE = 10.0  # [s] to spend in any case before a search without prediction ends
 
 def target_of(text):
     number = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(%?)\s*", text)
-    expect(number, f"--for-error {text}: expected a number, or per cent such as 1%.")
+    expect(number, f"--for-error {text}: expected a number, or a percentage such as 1%.")
     value = float(number.group(1)) / (100 if number.group(2) else 1)
     expect(0 < value < math.inf, f"--for-error {text}: expected a number above 0.")
     return value

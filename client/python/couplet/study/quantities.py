@@ -226,7 +226,7 @@ def quantities_of(case, section, participant, place="study"):
         where = f"{case.file}: {place}.quantities.{name}"
         expect(isinstance(content, dict), f"{where}: expected a mapping.")
         unknown = set(content) - KEYS
-        expect(not unknown, f"{where}: unknown key '{next(iter(unknown), '')}'; valid are {', '.join(sorted(KEYS))}.")
+        expect(not unknown, f"{where}: unknown key '{next(iter(unknown), '')}'; valid keys: {', '.join(sorted(KEYS))}.")
         ways = [w for w in ("probe", "file", "summary", "python", "field") if w in content]
         expect(len(ways) == 1, f"{where}: expected one of probe, file, summary, python, field.")
         expect("file" not in content or "column" in content, f"{where}: 'file' needs a 'column'.")

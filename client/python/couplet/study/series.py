@@ -244,7 +244,7 @@ class Series:
         seconds = self.seconds(size)
         if seconds > timeout:
             return Refusal(
-                f"size {size:g} would take about {seconds:.2g} s, more than a run may ({timeout:g} s, `timeout`)"
+                f"size {size:g} would take about {seconds:.2g} s, longer than a run may take ({timeout:g} s, `timeout`)"
             )
         ends = fit.size_for(target, fit.error), fit.size_for(target, lambda n: fits.POOR * fit.error(n) + fit.deviation)
         cheap, costly = (self.seconds(n) if n and n <= FARTHEST * largest else math.inf for n in ends)

@@ -45,7 +45,7 @@ class Study:
         unknown = set(section) - KEYS
         expect(
             not unknown,
-            f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid are {', '.join(sorted(KEYS))}.",
+            f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid keys: {', '.join(sorted(KEYS))}.",
         )
         self.case, self.section, self.out = case, section, pathlib.Path(out)
         participant = section.get("participant", next(iter(case.participants), None))

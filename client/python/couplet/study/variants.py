@@ -19,8 +19,8 @@ def variants_of(case):
     expect(
         not unknown,
         (
-            f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid are participant, variants, sweeps, or"
-            " those of a study by axes."
+            f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid keys are participant, variants and"
+            " sweeps, or those of a study by axes."
         ),
     )
     participant = study.get("participant", next(iter(case.participants), None))

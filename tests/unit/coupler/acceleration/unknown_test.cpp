@@ -230,10 +230,11 @@ TEST(SchemeChoice, continues_from_a_checkpoint_with_its_count_or_its_change) {
 }
 
 TEST(Waiting, names_who_is_waited_for) {
-  EXPECT_EQ(waiting_sentence({"fluid", "solid"}, {9, 1}, false),
-            "waiting: one after another, the others wait for 'fluid' 90 % of the time at work");
+  EXPECT_EQ(
+      waiting_sentence({"fluid", "solid"}, {9, 1}, false),
+      "waiting: the participants run one after another, and the others wait for 'fluid' during 90 % of the computing time");
   EXPECT_THAT(waiting_sentence({"fluid", "solid"}, {1, 9}, true),
-              HasSubstr("side by side, all wait for 'solid'"));
+              HasSubstr("run concurrently, and all wait for 'solid'"));
 }
 
 TEST(Waiting, is_silent_about_one_participant_and_short_runs) {

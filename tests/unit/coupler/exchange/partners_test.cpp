@@ -50,13 +50,13 @@ TEST(Introductions, another_configuration_than_the_cases_or_the_partners_is_refu
   p.exchange->digest = "xml-2";
   EXPECT_EQ(
       said(p, "", serial),
-      "coupling.exchange.digest: 'Right' reads a configuration of preCICE that is not the one this case was "
-      "made of: it was edited, or is another file. Recreate the case with `couplet import FILE --force`.");
+      "coupling.exchange.digest: 'Right' reads a preCICE configuration that differs from the one this case was created from: "
+      "either it was edited since, or it is a different file. Recreate the case with `couplet import FILE --force`.");
   p.exchange->digest = "";
   EXPECT_EQ(
       said(p, "xml-2", serial),
-      "'Left' and 'Right' read different configurations of preCICE: give both the same file. If it was edited, "
-      "recreate the case with `couplet import FILE --force`.");
+      "'Left' and 'Right' read different preCICE configurations: give both the same file. If it was edited, recreate the case "
+      "with `couplet import FILE --force`.");
 }
 
 TEST(Introductions, a_scheme_or_an_order_that_is_not_the_configurations_is_refused) {

@@ -92,7 +92,7 @@ TEST(Links, a_datum_that_nobody_gives_or_in_other_units_is_named) {
   Interface f = fluid();
   f.takes.push_back({"temperature", "K", Place::vertices});
   EXPECT_THAT(message([&] { links(f, solid()); }),
-              HasSubstr("'fluid' takes 'temperature', which no participant gives."));
+              HasSubstr("'fluid' takes 'temperature', but no participant gives it."));
   f = fluid();
   f.takes[0].unit = "mm";
   EXPECT_EQ(message([&] { links(f, solid()); }),

@@ -60,7 +60,7 @@ TEST_F(Geo, what_may_have_no_end_is_refused) {
                 AllOf(HasSubstr("The line 2 of '"), HasSubstr("is a device or a pipe and may have no end")))
         << text;
   EXPECT_THAT(error("x = 1;\nSleep 30;\n"),
-              HasSubstr("line 2 of '" + (folder / "a.geo").string() + "' lets gmsh wait (Sleep)"));
+              HasSubstr("line 2 of '" + (folder / "a.geo").string() + "' makes gmsh wait (Sleep)"));
   EXPECT_EQ(error("Physical Curve(\"Sleep\") = {1}; // Sleep 30;\n"), "");
 }
 

@@ -241,7 +241,7 @@ TEST(DayReport, a_part_of_a_year_is_doubted_and_no_day_is_no_answer) {
   p.economics.emplace().field = 1;
   const auto part = report(6, 0).first;
   ASSERT_EQ(part.size(), 1u);
-  EXPECT_NE(part[0].find("2 days represent a year"), std::string::npos) << part[0];
+  EXPECT_NE(part[0].find("extrapolated from 2 days to a year"), std::string::npos) << part[0];
   EXPECT_TRUE(report(4 + 365, 0).first.empty());
   const auto odd = report(4 + 400, 0).first;
   ASSERT_EQ(odd.size(), 1u);
