@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks whether this machine can run coupled cases: programs and their versions, MPI, Python packages, gmsh, cores,
-memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise; each line
-that fails states how to fix it."""
+memory, and a coupled self-test of two seconds. The exit code is 0 if cases can be run, and 1 otherwise. Each line
+that fails (NO), or that lacks what only some cases need (--), states how to fix it."""
 import importlib.util
 import os
 import pathlib
@@ -29,6 +29,10 @@ def declare(parser):
     parser.add_argument("--quick", action="store_true", help="skips the self-test")
 
 
+MARKS = {True: "ok ", False: "NO ", None: "-- "}
+SOMETIMES = {"mesh_tool": "partitioned or converted meshes", "relay": "couplet run --separate"}  # programs and what needs them
+
+
 def first_line(*command):
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=30)
@@ -44,6 +48,17 @@ def programs(bin_):
             "" if (bin_ / name).exists() else ": scripts/build, or COUPLET_BIN=FOLDER/bin"
         ), said is not None
 
+    for name, purpose in SOMETIMES.items():
+        if not (bin_ / name).exists():
+            yield name, f"missing, but needed for {purpose}: {get(name)}", None
+
+
+def get(*targets):
+    """What provides targets of the build that are missing."""
+    if (places.build() / "CMakeCache.txt").exists():
+        return f"scripts/build release {' '.join(targets)}"
+    return "install a package or prefix that was made after scripts/build, which builds everything"
+
 
 def libraries():
     """What own programs in C++ and those of preCICE are linked with."""
@@ -51,11 +66,10 @@ def libraries():
     kept["precice_couplet"] = ("precice/lib/libprecice.so", "lib/couplet/precice/lib/libprecice.so")
     missing = [target for target, files in kept.items() if not any((places.build() / file).exists() for file in files)]
     yield "libraries", (
-        "missing, but needed by your own C++ programs and those on preCICE's interface: scripts/build release"
-        f" {' '.join(missing)}"
+        f"missing, but needed by your own C++ programs and those on preCICE's interface: {get(*missing)}"
         if missing
         else "all there"
-    ), True
+    ), (None if missing else True)
 
 
 def surroundings():
@@ -65,11 +79,11 @@ def surroundings():
     missing = [
         (package, needed) for module, (package, needed) in PACKAGES.items() if importlib.util.find_spec(module) is None
     ]
-    yield "packages", f"missing: apt install {' '.join(p for p, _ in missing)}" if missing else "all there", not any(
-        needed for _, needed in missing
+    yield "packages", f"missing: apt install {' '.join(p for p, _ in missing)}" if missing else "all there", (
+        False if any(needed for _, needed in missing) else None if missing else True
     )
     said = first_line("gmsh", "--version")
-    yield "gmsh", said or "missing, but needed for meshes from .geo (apt install gmsh)", True
+    yield "gmsh", said or "missing, but needed for meshes from .geo (apt install gmsh)", True if said else None
     cores = len(os.sched_getaffinity(0))
     yield "cores", f"{cores}, load {os.getloadavg()[0]:.1f}", True
     memory = re.findall(r"^(MemTotal|MemAvailable):\s+(\d+)", pathlib.Path("/proc/meminfo").read_text(), flags=re.M)
@@ -105,9 +119,9 @@ def self_test():
 
 def run(arguments):
     found = [*programs(places.build() / "bin"), *libraries(), *surroundings()]
-    good = all(fine for _, _, fine in found)
+    good = all(fine is not False for _, _, fine in found)
     for name, text, fine in found:
-        print(f"{'ok ' if fine else 'NO '} {name:14} {text}")
+        print(f"{MARKS[fine]} {name:14} {text}")
     if not arguments.quick and good:
         text, good = self_test()
         print(f"{'ok ' if good else 'NO '} {'self-test':14} {text}")
