@@ -48,7 +48,7 @@ constexpr MissingPhysics table[] = {
      "temperature thermal heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh buoyancy boussinesq "
      "expansion energy-equation natural-convection viscous-heating dissipation heat-source",
      "heat in the fluid has constant properties, no sources and no heating by friction, and its buoyancy is that of Boussinesq",
-     "set the section 'heat' and the temperature, heat flux or film of the patches"},
+     "set the section heat and the temperature, heat-flux or film of the patches"},
     {fluid,
      "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
      "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "

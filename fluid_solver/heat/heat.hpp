@@ -42,7 +42,7 @@ class HeatBoundary {
  private:
   struct GivenHeat {
     FaceRange faces;
-    fv::Expression coefficient, ambient, flux;
+    fv::Expression coefficient{}, ambient{}, flux{};
     bool is_temperature = false;  // ambient is the temperature of the face
     bool only_where_it_enters = false;
   };

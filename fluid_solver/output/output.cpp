@@ -247,7 +247,7 @@ template class PointValues<3>;
 template <int D>
 struct FluidSurfaces<D>::Faces {
   std::vector<double> traction, shear, yplus;
-  std::vector<double> temperature, heat_flux;  // empty without heat
+  std::vector<double> temperature{}, heat_flux{};  // empty without heat
 };
 
 template <int D>

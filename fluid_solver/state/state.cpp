@@ -219,13 +219,13 @@ void visit(HeatLevel& h, bool has_history, io::Archive archive) {
   field(archive, Entries::cells, "temperature", h.temperature);
   field(archive, Entries::owned_boundary, "boundary", h.boundary);
   field(archive, Entries::owned_boundary, "flow", h.flow);
-  field(archive, Entries::owned_cells, "conduction", h.conduction);
+  field(archive, Entries::cells, "conduction", h.conduction);
   archive.sums("received", {&h.received, 1});
   if (!has_history) return;
   field(archive, Entries::cells, "old-temperature", h.temperature_old);
   field(archive, Entries::owned_boundary, "old-boundary", h.boundary_old);
   field(archive, Entries::owned_boundary, "old-flow", h.flow_old);
-  field(archive, Entries::owned_cells, "old-conduction", h.conduction_old);
+  field(archive, Entries::cells, "old-conduction", h.conduction_old);
   field(archive, Entries::owned_boundary, "old-carried", h.carried_old);
   field(archive, Entries::cells, "old-convection", h.convection_old);
   field(archive, Entries::flux_faces, "old-faces", h.faces_old);

@@ -227,7 +227,8 @@ struct HeatLevel {
   std::vector<double> temperature;  ///< T^n per local cell, ghosts current [K]
   std::vector<double> boundary;     ///< T^n per boundary face [K]
   std::vector<double> flow;         ///< conducted into the fluid at t^n, per boundary face [K m^3/s]
-  std::vector<double> conduction;   ///< sum of the conducted fluxes into each owned cell at t^n [K m^3/s]
+  std::vector<double>
+      conduction;  ///< sum of the conducted fluxes at t^n, per local cell (ghosts are undefined) [K m^3/s]
   double received = 0;  ///< stored at the start and received through the boundary since, of this rank [K m^3]
   // At t^{n-1}.
   std::vector<double> temperature_old, boundary_old, flow_old, conduction_old;

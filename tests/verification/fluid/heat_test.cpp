@@ -1,70 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat in the fluid: order, conservation, boundaries, and flows that buoyancy drives.
-#include "fluid_case.hpp"
+// Heat in the fluid: order, conservation, boundaries, restart.
+#include "heat_case.hpp"
 #include "participant_case.hpp"
-#include "ring_mesh.hpp"
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test::heat_test {
 using namespace mesh;
-using Exact = std::function<double(const Vec3&)>;
+using parallel::max, parallel::min, parallel::sum;
 
-constexpr double reference = 300, pi = std::numbers::pi;
-
-/// rho = c = 1, so that k is the diffusivity.
-FluidParameters warm(double viscosity, double conductivity, double tolerance = 1e-11) {
-  FluidParameters p = fluid_of(1, viscosity, tolerance);
-  p.heat.emplace();
-  p.heat->conductivity = conductivity;
-  p.heat->specific_heat = 1;
-  p.heat->reference_temperature = reference;
-  p.heat->initial_temperature.text = "300";
-  return p;
-}
-
-BoundaryParameters at(BoundaryParameters b, const std::string& temperature) {
-  b.temperature.emplace().text = temperature;
-  return b;
-}
-
-template <int D>
-double temperature_error(const FluidCase<D>& c, const Exact& exact) {
-  const State<D>& s = c.state();
-  double square = 0, volume = 0;
-  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i) {
-    Vec3 x = Vec3::Zero();
-    x.head<D>() = s.placement->centre[i];
-    square += s.placement->volume[i] * std::pow(reference + s.heat.temperature[i] - exact(x), 2);
-    volume += s.placement->volume[i];
-  }
-  return std::sqrt(sum(MPI_COMM_WORLD, square) / sum(MPI_COMM_WORLD, volume));
-}
-
-template <int D>
-double stored(const FluidCase<D>& c) {
-  double all = 0;
-  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i)
-    all += c.state().placement->volume[i] * c.state().heat.temperature[i];
-  return sum(MPI_COMM_WORLD, all);
-}
-
-/// Sum of V |T - T_ref|, the scale of the balance.
-template <int D>
-double content(const FluidCase<D>& c) {
-  double all = 0;
-  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i)
-    all += c.state().placement->volume[i] * std::abs(c.state().heat.temperature[i]);
-  return sum(MPI_COMM_WORLD, all);
-}
-
-/// Heat into the fluid that a patch conducts, over rho c [K m^3/s].
-template <int D>
-double flow(const FluidCase<D>& c, const std::string& patch) {
-  const Patch& p = *c.mesh().find_patch(patch);
-  double all = 0;
-  for (Index f = p.first; f < p.first + p.count; ++f) all += c.state().heat.flow[f - c.mesh().n_interior];
-  return sum(MPI_COMM_WORLD, all);
-}
+constexpr double pi = std::numbers::pi;
 
 /// Waves that a uniform stream carries and conduction damps. The mesh swings within the box.
 struct Stream {
@@ -270,78 +214,123 @@ TEST(HeatConvection, bounded_makes_no_new_extremes) {
   }
 }
 
-/// Buoyancy on -y.
-void add_buoyancy(FluidParameters& p, double expansion_times_gravity) {
-  p.heat->expansion = 1e-3;
-  p.heat->gravity = {0, -expansion_times_gravity / p.heat->expansion};
-}
-
-/// Pressure balances a temperature that is linear in height exactly where cells are equal.
-TEST(Buoyancy, leaves_a_stratified_fluid_at_rest) {
-  FluidParameters p = warm(0.01, 0.01, 1e-12);
-  add_buoyancy(p, 10);
-  all_sides(p, 2, boundary(BoundaryType::no_slip));
-  p.boundaries["ymin"] = at(boundary(BoundaryType::no_slip), "300");
-  p.boundaries["ymax"] = at(boundary(BoundaryType::no_slip), "310");
-  p.heat->initial_temperature.text = "300+10*y";
-  FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {12, 16, 1}, Vec3::Zero(), Vec3::Ones()),
-                 p);
-  c.run(1, 50);
-  const double speed = c.largest_velocity_error([](const Vec3&) { return Vec3(Vec3::Zero()); });
-  printf("stratified rest: %.1e m/s\n", speed);
-  RecordProperty("speed", std::to_string(speed * 1e9) + "e-9");
-  EXPECT_LT(speed, 1e-9);  // free fall would reach 10 m/s
-}
-
-/// Square cavity between a hot and a cold wall, alpha = H = dT = 1; `finer`: cells narrow towards the walls.
-struct Cavity {
-  double nusselt = 0, seconds = 0;
-  int sub_steps = 0;
-};
-Cavity cavity(double rayleigh, int n, double end, double finer = 0) {
-  constexpr double prandtl = 0.71;
-  FluidParameters p = warm(prandtl, 1, 1e-7);
-  p.heat->initial_temperature.text = "300";
-  add_buoyancy(p, rayleigh * prandtl);
-  all_sides(p, 2, boundary(BoundaryType::no_slip));
-  p.boundaries["xmin"] = at(boundary(BoundaryType::no_slip), "300.5");
-  p.boundaries["xmax"] = at(boundary(BoundaryType::no_slip), "299.5");
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones());
-  if (finer > 0)
-    for (Vec3& x : raw.points)
-      for (int c = 0; c < 2; ++c) x[c] = 0.5 + 0.5 * std::tanh(finer * (2 * x[c] - 1)) / std::tanh(finer);
-  FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-  const auto start = std::chrono::steady_clock::now();
-  Cavity result;
-  double before = 0;
-  for (int i = 0; i < 20; ++i) {
-    c.run(end * (i + 1) / 20, 4);
-    before = std::exchange(result.nusselt, flow(c, "xmin"));
+/// A channel of height 1 with a developed flow of mean speed 1, Pe = 2 H U/a = 100; Nusselt numbers with 2 H.
+struct Plates {
+  FluidCase<2> run;
+  double conductivity;
+  /// Bulk temperature of the column of cells at x, and that of the wall, less the reference.
+  std::array<double, 2> at(double x, const std::string& wall) const {
+    double carried = 0, passed = 0, on_wall = 0;
+    const State<2>& s = run.state();
+    const double width = 0.25;
+    for (Index c = 0; c < run.mesh().cells.n_owned(); ++c) {
+      if (std::abs(s.placement->centre[c][0] - x) > 0.5 * width) continue;
+      const double flux = s.u[c][0] * s.placement->volume[c];
+      passed += flux, carried += flux * s.heat.temperature[c];
+    }
+    const Patch& patch = *run.mesh().find_patch(wall);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Index b = f - run.mesh().n_interior;
+      if (std::abs(s.placement->boundary_centre[b][0] - x) < 0.5 * width) on_wall += s.heat.boundary[b];
+    }
+    return {sum(MPI_COMM_WORLD, carried) / sum(MPI_COMM_WORLD, passed), sum(MPI_COMM_WORLD, on_wall)};
   }
-  result.sub_steps = int(c.fluid().statistics().all_sub_steps);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  printf("cavity, Ra %.0e, %d^2%s: Nu %.4f (changed by %.1e of late, cold wall %.4f), %d sub-steps, %.1f s\n",
-         rayleigh, n, finer > 0 ? " graded" : "", result.nusselt, result.nusselt - before, -flow(c, "xmax"),
-         result.sub_steps, result.seconds);
-  return result;
+  double flux(double x, const std::string& wall) const {
+    const Patch& patch = *run.mesh().find_patch(wall);
+    double all = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Index b = f - run.mesh().n_interior;
+      const State<2>& s = run.state();
+      if (std::abs(s.placement->boundary_centre[b][0] - x) < 0.125)
+        all += s.heat.flow[b] / s.placement->area[f].norm();
+    }
+    return sum(MPI_COMM_WORLD, all);
+  }
+};
+Plates plates(const BoundaryParameters& lower, const BoundaryParameters& upper) {
+  FluidParameters p = warm(0.02, 0.02, 1e-8);
+  p.boundaries["xmin"] = at(boundary(BoundaryType::inlet, {"6*y*(1-y)", "0"}), "301");
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymin"] = lower, p.boundaries["ymax"] = upper;
+  p.initial_velocity = {{"6*y*(1-y)"}, {"0"}};
+  FluidCase<2> c(MPI_COMM_WORLD,
+                 make_box(BoxCells::quadrilaterals, {100, 32, 1}, Vec3::Zero(), Vec3(25, 1, 1)), p);
+  c.run(75, 25);
+  return {std::move(c), 0.02};
 }
 
-TEST(HeatedCavity, has_the_nusselt_numbers_of_the_benchmark) {
-  EXPECT_NEAR(cavity(1e3, 40, 0.6).nusselt, 1.1178, 0.005 * 1.1178);
-  EXPECT_NEAR(cavity(1e4, 48, 0.4).nusselt, 2.2448, 0.005 * 2.2448);
+TEST(Graetz, plates_of_one_temperature_have_the_nusselt_number_of_the_developed_flow) {
+  const BoundaryParameters wall = at(boundary(BoundaryType::no_slip), "300");
+  const Plates c = plates(wall, wall);
+  const double x = 18.125, bulk = c.at(x, "ymin")[0];
+  const double nusselt = -c.flux(x, "ymin") * 2 / (0.02 * bulk);
+  printf("Graetz, temperature: Nu %.4f (7.5407)\n", nusselt);
+  RecordProperty("nusselt", std::to_string(nusselt));
+  EXPECT_NEAR(nusselt, 7.5407, 0.005 * 7.5407);
 }
-TEST(HeatedCavity, of_high_rayleigh_numbers_has_those_of_the_benchmark) {
-  EXPECT_NEAR(cavity(1e5, 64, 0.25, 1.2).nusselt, 4.5216, 0.005 * 4.5216);
-  EXPECT_NEAR(cavity(1e6, 64, 0.15, 1.5).nusselt, 8.8252, 0.005 * 8.8252);
+
+TEST(Graetz, a_plate_that_heats_opposite_an_insulated_one_has_its_nusselt_number) {
+  BoundaryParameters hot = boundary(BoundaryType::no_slip);
+  hot.heat_flux.emplace().text = "0.5";
+  const Plates c = plates(hot, boundary(BoundaryType::no_slip));
+  const auto [bulk, wall] = c.at(18.125, "ymin");
+  const double nusselt = 0.5 * 2 / (0.02 * (wall - bulk));
+  printf("Graetz, flux: Nu %.4f (5.3846)\n", nusselt);
+  RecordProperty("nusselt", std::to_string(nusselt));
+  EXPECT_NEAR(nusselt, 5.3846, 0.005 * 5.3846);
 }
-TEST(HeatedCavity, converges_in_second_order) {
-  const double exact = 2.24482;
-  double error[2];
-  for (int i = 0; i < 2; ++i) error[i] = cavity(1e4, 24 << i, 0.4).nusselt - exact;
-  const double slope = std::log2(error[0] / error[1]);
-  printf("cavity: slope %.2f\n", slope);
-  RecordProperty("slope", std::to_string(slope));
-  EXPECT_GT(slope, 1.9);
+
+/// A cavity with a film, a flux and buoyancy on oblique cells.
+FluidParameters in_a_box(HeatParameters::Convection convection) {
+  FluidParameters p = fluid_of(1, 0.01, 1e-10, "box");
+  p.heat = warm(1, 0.01).heat;
+  p.heat->convection = convection;
+  p.heat->expansion = 1e-3;
+  p.heat->gravity = {0, -10};
+  all_sides(p, 2, boundary(BoundaryType::no_slip));
+  p.boundaries["xmin"].temperature.emplace().text = "350+10*sin(20*t)";
+  p.boundaries["ymin"].heat_flux.emplace().text = "0.2*x";
+  p.boundaries["xmax"].film.emplace().coefficient.text = "0.1";
+  p.boundaries["xmax"].film->ambient.text = "280";
+  return p;
+}
+
+std::unique_ptr<FluidParticipant<2>> box_run(const FluidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
+  RawMesh raw;
+  if (parallel::comm_rank(comm) == 0) {
+    raw = make_box(BoxCells::quadrilaterals, {10, 8, 1}, Vec3::Zero(), Vec3::Ones());
+    perturb_interior(raw, 0.15, 5);
+  }
+  return std::make_unique<FluidParticipant<2>>(distribute(comm, raw), p, FluidContext{}, MotionLink{});
+}
+
+TEST(HeatRestart, goes_on_from_a_checkpoint_bit_for_bit_and_alike_on_any_number_of_ranks) {
+  for (const auto convection : {central, bounded}) {
+    const FluidParameters p = in_a_box(convection);
+    const auto first = box_run(p), second = box_run(p), alone = box_run(p, MPI_COMM_SELF);
+    take_steps(*first, 0, 4, 0.05);
+    support::SavedState(*first).load_into(*second);
+    take_steps(*first, 4, 8, 0.05);
+    take_steps(*second, 4, 8, 0.05);
+    EXPECT_EQ(first->fluid().state().u, second->fluid().state().u);
+    const HeatLevel &one = first->fluid().state().heat, &two = second->fluid().state().heat;
+    EXPECT_EQ(one.temperature, two.temperature);
+    EXPECT_EQ(one.flow, two.flow);
+    EXPECT_EQ(one.received, two.received);
+    take_steps(*alone, 0, 8, 0.05);
+    const auto &cells = first->fluid().mesh(), &all = alone->fluid().mesh();
+    std::vector<double> by_id(all.cells.n_global());
+    for (Index c = 0; c < all.cells.n_owned(); ++c)
+      by_id[all.cell_id[c]] = alone->fluid().state().heat.temperature[c];
+    double largest = 0, warmest = 0;
+    for (Index c = 0; c < cells.cells.n_owned(); ++c) {
+      largest = std::max(largest, std::abs(one.temperature[c] - by_id[cells.cell_id[c]]));
+      warmest = std::max(warmest, one.temperature[c]);
+    }
+    EXPECT_LT(max(MPI_COMM_WORLD, largest), 1e-7);
+    EXPECT_GT(max(MPI_COMM_WORLD, warmest), 10);
+    EXPECT_LT(apart(*first, *alone), 1e-8);
+  }
 }
 
 }  // namespace couplet::fluid::test::heat_test
