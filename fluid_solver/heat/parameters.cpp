@@ -9,6 +9,15 @@
 
 namespace couplet::fluid {
 
+namespace {
+
+/// The key of heat that a patch has.
+const char* given_key(const BoundaryParameters& b) {
+  return b.film ? "film" : b.heat_flux ? "heat-flux" : "temperature";
+}
+
+}  // namespace
+
 void declare_heat_boundary(config::Section& s, BoundaryParameters& b) {
   s.value("temperature", b.temperature)
       .unit("K", 70, 5000)
@@ -43,7 +52,7 @@ void declare_heat_boundary(config::Section& s, BoundaryParameters& b) {
           return "fluid passes this patch, which may have a 'temperature' only; remove 'heat-flux' or 'film'";
         return "";
       },
-      "type");
+      given_key(b));
 }
 
 namespace {
@@ -101,7 +110,7 @@ void declare_heat(config::Section& s, FluidParameters& p) {
        "not supported together with pressure waves; remove 'compressibility', or set 'scheme: none'"},
       {!p.bodies.empty(), "not supported together with immersed bodies; remove 'bodies'"},
       {!p.gaps.empty(), "not supported together with gaps that close; remove 'gaps'"},
-      {p.turbulence.has_value(), "eddies carry no heat in this version; remove 'turbulence'"},
+      {p.turbulence.has_value(), "the heat of eddies is not modeled; remove 'turbulence'"},
       {p.courant.has_value(), "the temperature is carried explicitly; remove 'courant'"}};
   for (const auto& [applies, message] : refused)
     s.check([told = p.heat && applies ? message : ""] { return told; }, "heat");
@@ -118,7 +127,7 @@ void declare_heat(config::Section& s, FluidParameters& p) {
                      ? "this fluid has no 'heat'; add the section, or remove 'temperature', 'heat-flux' or 'film'"
                      : "";
         },
-        "boundaries." + patch + ".type");
+        "boundaries." + patch + "." + given_key(b));
 }
 
 }  // namespace couplet::fluid

@@ -227,8 +227,8 @@ struct HeatLevel {
   std::vector<double> temperature;  ///< T^n per local cell, ghosts current [K]
   std::vector<double> boundary;     ///< T^n per boundary face [K]
   std::vector<double> flow;         ///< conducted into the fluid at t^n, per boundary face [K m^3/s]
-  std::vector<double>
-      conduction;  ///< sum of the conducted fluxes at t^n, per local cell (ghosts are undefined) [K m^3/s]
+  /// Sum of the conducted fluxes at t^n, per local cell (ghosts are undefined) [K m^3/s].
+  std::vector<double> conduction;
   double received = 0;  ///< stored at the start and received through the boundary since, of this rank [K m^3]
   // At t^{n-1}.
   std::vector<double> temperature_old, boundary_old, flow_old, conduction_old;
