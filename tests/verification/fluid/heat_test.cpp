@@ -12,7 +12,7 @@ constexpr double pi = std::numbers::pi;
 
 /// Waves that a uniform stream carries and conduction damps. The mesh swings within the box.
 struct Stream {
-  bool moves = false, perturbed = false;
+  bool moves = false, sheared = false, random = false;
   HeatParameters::Convection convection = HeatParameters::Convection::central;
   double conductivity = 0.01;
 };
@@ -27,13 +27,15 @@ double stream_error(const Stream& q, int n, int steps) {
   p.initial_velocity = {{"1"}, {"0.5"}};
   p.time_step = 1;
   RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(2, 2, 1));
-  if (q.perturbed) perturb_interior(raw, 0.2, 3);
+  if (q.random) perturb_interior(raw, 0.2, 3);
+  const auto waved = [](const Vec3& x, double size) {
+    const double s = size * std::sin(pi * x[0] / 2) * std::sin(pi * x[1] / 2);
+    return Vec3(x[0] + s, x[1] - 0.7 * s, x[2]);
+  };
+  if (q.sheared)
+    for (Vec3& x : raw.points) x = waved(x, 0.2);
   PointMotion motion;
-  if (q.moves)
-    motion = [](const Vec3& x, GlobalIndex, double t) {
-      const double s = 0.1 * std::sin(pi * x[0] / 2) * std::sin(pi * x[1] / 2) * std::sin(4 * t);
-      return Vec3(x[0] + s, x[1] - 0.7 * s, x[2]);
-    };
+  if (q.moves) motion = [&](const Vec3& x, GlobalIndex, double t) { return waved(x, 0.1 * std::sin(4 * t)); };
   FluidCase<2> c(MPI_COMM_WORLD, raw, p, motion);
   c.run(end, steps);
   const double left = std::exp(-2 * pi * pi * q.conductivity * end);
@@ -53,10 +55,14 @@ void check_order(const char* name, const Stream& q, double least) {
 }
 
 TEST(HeatOrder, is_second_in_space_and_time) { check_order("regular mesh", {}, 1.9); }
-TEST(HeatOrder, is_second_on_oblique_cells) { check_order("oblique mesh", {.perturbed = true}, 1.9); }
+TEST(HeatOrder, is_second_on_oblique_cells) { check_order("oblique mesh", {.sheared = true}, 1.9); }
+/// Cells of random shapes have mean values that are of first order in space, as for the velocity.
+TEST(HeatOrder, is_above_one_and_a_half_on_random_cells) {
+  check_order("random mesh", {.random = true}, 1.5);
+}
 TEST(HeatOrder, is_second_on_a_moving_mesh) { check_order("moving mesh", {.moves = true}, 1.9); }
 TEST(HeatOrder, is_second_where_conduction_prevails) {
-  check_order("conduction", {.moves = true, .conductivity = 1}, 1.9);
+  check_order("conduction", {.moves = true, .conductivity = 0.2}, 1.9);
 }
 TEST(HeatOrder, of_bounded_convection_is_nearly_second_where_it_is_smooth) {
   check_order("bounded", {.convection = HeatParameters::Convection::bounded}, 1.6);
@@ -171,7 +177,7 @@ TEST(HeatBoundaries, a_slab_has_the_flux_of_its_resistances_in_series) {
 
 /// Fluid that enters has the temperature of the patch, or the initial one; what leaves has that of the cells.
 TEST(HeatBoundaries, inflow_brings_its_temperature_and_outflow_takes_that_of_the_cells) {
-  FluidParameters p = warm(0.01, 1e-3);
+  FluidParameters p = warm(0.01, 0.02);
   p.boundaries["xmin"] = at(boundary(BoundaryType::inlet, {"1", "0"}), "310");
   p.boundaries["xmax"] = at(boundary(BoundaryType::outlet), "1000");  // not used: nothing enters there
   p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
@@ -184,16 +190,21 @@ TEST(HeatBoundaries, inflow_brings_its_temperature_and_outflow_takes_that_of_the
   FluidCase<2> as_at_the_start(MPI_COMM_WORLD, raw, p);
   as_at_the_start.run(1, 20);
   EXPECT_LT(temperature_error<2>(as_at_the_start, [](const Vec3&) { return 300; }), 1e-10);
-  p.boundaries["xmax"].pressure.text = "1";  // the fluid turns back
+  // Fluid that enters through an outlet has the temperature of the outlet.
+  p = warm(0.01, 0.02);
+  p.boundaries["xmin"] = boundary(BoundaryType::outlet);
+  p.boundaries["xmax"] = at(boundary(BoundaryType::outlet, {}, "2"), "310");
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
   FluidCase<2> back(MPI_COMM_WORLD, raw, p);
-  EXPECT_LT(temperature_error<2>(back, [](const Vec3&) { return 300; }), 1e-10);
+  back.run(6, 120);
+  EXPECT_LT(temperature_error<2>(back, [](const Vec3&) { return 310; }), 1e-6);
 }
 
 /// A hot block that a vortex stretches keeps its extremes with bounded convection.
 TEST(HeatConvection, bounded_makes_no_new_extremes) {
   for (const auto convection : {central, bounded}) {
     auto c = vortex<2>("x > 0.2 && x < 0.5 && y > 0.3 && y < 0.7 ? 310 : 300", convection,
-                       BoxCells::quadrilaterals, 24, 1e-3);
+                       BoxCells::quadrilaterals, 24, 1e-9);
     double low = 0, high = 0;
     for (int i = 0; i < 40; ++i) {
       c.step(0.01);
