@@ -204,8 +204,9 @@ void HeatTransport<D>::add_limited(const State<D>& from, std::span<const double>
     room[excess[f] > 0 ? p : n][1] += std::abs(excess[f]);
   }
   for (std::size_t b = 0; b < next_.boundary_old.size(); ++b) {
-    const double value = next_.boundary_old[b];
-    widen(mesh_.owner[mesh_.n_interior + Index(b)], value, value);
+    const Index f = mesh_.n_interior + Index(b);
+    const double swept = step_.moving() ? step_.swept[f] : 0, value = next_.boundary_old[b];
+    if (step_.dt * from.phi[f] < swept) widen(mesh_.owner[f], value, value);  // fluid enters
   }
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const Vec<2> left = volume[c] * Vec<2>(range[c][1] - low[c], low[c] - range[c][0]);
