@@ -240,10 +240,13 @@ Row heat(const Fluid<D>& fluid) {
   sums[received] = s.heat.received;
   for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
     const mesh::Patch& patch = mesh.patches[i];
+    const bool is_open = condition_of(fluid.parameters().boundaries.at(patch.name)).passage != Passage::none;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Index b = f - mesh.n_interior;
+      sums[patches + 2 * i] += s.heat.flow[b];
+      if (!is_open) continue;  // the flux of a wall at the end of the step is not the mean one of the mesh
       const double flux = s.mesh_flux.empty() ? s.phi[f] : s.phi[f] - s.mesh_flux[f];
-      sums[patches + 2 * i] += s.heat.flow[b] - flux * s.heat.boundary[b];
+      sums[patches + 2 * i] -= flux * s.heat.boundary[b];
     }
     sums[patches + 2 * i + 1] = patch.count;
   }
