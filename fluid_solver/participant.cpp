@@ -373,7 +373,8 @@ void FluidParticipant<D>::save(io::CheckpointWriter& file) const {
 template <int D>
 void FluidParticipant<D>::load(io::CheckpointReader& file) {
   file.on(mesh_);
-  fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
+  fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement,
+                                fluid_->parameters().heat.has_value()));
   fluid_->solvers().load(file);
   if (interface_) file.read(mesh::Entries::owned_boundary, "structure-area", flat(structure_area_));
   if (statistics_) statistics_->visit(io::Archive(file));

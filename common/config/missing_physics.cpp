@@ -41,11 +41,14 @@ constexpr MissingPhysics table[] = {
      "eddy-viscosity-ratio mixing-length wall-function wall-functions roughness",
      "no wall functions; Smagorinsky and WALE need a mesh that resolves the wall; no RANS models",
      "refine at the walls until y+ is about 1, or use another fluid solver"},
+    {fluid, "conjugate-heat-transfer cht conjugate heat-interface",
+     "no conjugate heat transfer between Couplet's own fluid and a solid",
+     "give the walls a film, or couple an external program that solves the heat, as in warm-flap"},
     {fluid,
-     "temperature thermal heat heat-flux heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh "
-     "buoyancy boussinesq expansion conjugate-heat-transfer cht energy-equation natural-convection",
-     "no temperature in the fluid, so no buoyancy and no conjugate heat transfer within Couplet's own fluid solver",
-     "couple an external program that solves the heat equation, as the case warm-flap does"},
+     "temperature thermal heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh buoyancy boussinesq "
+     "expansion energy-equation natural-convection viscous-heating dissipation heat-source",
+     "heat in the fluid has constant properties, no sources and no heating by friction, and its buoyancy is that of Boussinesq",
+     "set the section heat and the temperature, heat-flux or film of the patches"},
     {fluid,
      "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
      "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "

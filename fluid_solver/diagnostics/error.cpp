@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "common/base/processor_clones.hpp"
 #include "common/diagnostics/error_parts.hpp"
 #include "common/diagnostics/reference.hpp"
+#include "common/diagnostics/results.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/step_errors.hpp"
@@ -34,19 +36,21 @@ constexpr double quasi_steady = 0.2;  // phase of sound across the mesh [rad] be
 constexpr double window = 0.25;       // recent values cover about this part of the elapsed time
 constexpr double most_swings = 2;     // of a flow of its own, from which errors of its phase exceed others
 
-/// Sums of a linear fit through the neighbors of a cell, weighted by 1/d^2.
-template <int D>
+/// Sums of a linear fit of vectors of `Width` numbers through the neighbors of a cell, weighted by 1/d^2.
+template <int D, int Width>
 struct LinearFit {
   Eigen::Matrix<double, D + 1, D + 1> moments = Eigen::Matrix<double, D + 1, D + 1>::Zero();
-  Eigen::Matrix<double, D + 1, D> values = Eigen::Matrix<double, D + 1, D>::Zero();
-  void add(const Vec<D>& d, const Vec<D>& value) {
+  Eigen::Matrix<double, D + 1, Width> values = Eigen::Matrix<double, D + 1, Width>::Zero();
+  void add(const Vec<D>& d, const Vec<Width>& value) {
     Eigen::Matrix<double, D + 1, 1> row;
     row << 1, d;
     moments += row * row.transpose() / d.squaredNorm();
     values += row * value.transpose() / d.squaredNorm();
   }
   /// Value of the fit in the cell itself.
-  Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
+  Vec<Width> value() const {
+    return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose();
+  }
 };
 
 /// Divided differences of u in time: rate and its change become those of this step, u is kept, `left` gets the local errors.
@@ -108,7 +112,10 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
  public:
   explicit FluidErrorEstimate(const FluidView<D>& view) : view_(view), driving_(view.parameters()) {}
   void observe(diagnostics::Report&) override { accepted(view_.step.dt); }
-  void conclude(diagnostics::Report& report) override { report.errors = parts(); }
+  void conclude(diagnostics::Report& report) override {
+    report.errors = parts();
+    if (view_.parameters().heat) show_temperature();
+  }
   void visit(io::Archive& archive) override {
     archive.common("numbers", seen_, dt_old_, time_, left_of_late_, carried_, changed_, largest_, steps_);
     for (const auto& [name, vectors] : {std::pair{"left", &left_},
@@ -194,7 +201,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
   diagnostics::ErrorParts parts() {
     diagnostics::ErrorParts parts;
     parts.dimension = D;
-    const double speed = root_mean_square(view_.fluid.state().u);
+    const double speed = root_mean_square<D>(view_.fluid.state().u);
     if (!(speed > 0) || seen_ == 0) return parts;
     const double falls = std::sqrt(largest_pressure() / view_.properties().rho);
     const double across = std::pow(double(view_.mesh.cells.n_global()), 1. / D);
@@ -207,7 +214,7 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     }
     const double scale = diagnostics::scale_of(size, falls);
     parts.field = "velocity", parts.unit = "m/s", parts.size = size;
-    parts.mesh = recovered_difference() / scale;
+    parts.mesh = recovered_difference<D>(view_.fluid.state().u, view_.fluid.state().u_boundary) / scale;
     parts.step = step_part() * steps_.size() / scale;
     parts.misses_step = std::isnan(parts.step);
     // The trapezoidal rule also knows the divergence before.
@@ -226,7 +233,8 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     return parallel::max(view_.mesh.comm, most);
   }
   /// Root mean square over the volume; per local cell.
-  double root_mean_square(const Vectors<D>& values) const {
+  template <int Width>
+  double root_mean_square(const Vectors<Width>& values) const {
     const std::vector<double>& volume = view_.fluid.state().placement->volume;
     double squares = 0, whole = 0;
     for (Index c = 0; c < view_.mesh.cells.n_owned(); ++c) {
@@ -251,26 +259,48 @@ class FluidErrorEstimate final : public diagnostics::Diagnostic {
     if (acts) return stays ? std::min(sum, left_of_late_ / steps_.size()) : sum;
     return driving_.moves() || steps_.swings() <= most_swings ? sum : diagnostics::ErrorParts::unknown;
   }
-  double recovered_difference() const {
+  /// Shows the least and the largest temperature with the mesh's part of their error. Collective.
+  void show_temperature() const {
+    const HeatLevel& heat = view_.fluid.state().heat;
+    Vectors<1> cells, boundary;
+    double most[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const double t : heat.temperature) {
+      cells.emplace_back(t);
+      most[0] = std::max(most[0], -t), most[1] = std::max(most[1], t);
+    }
+    for (const double t : heat.boundary) boundary.emplace_back(t);
+    MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, view_.mesh.comm);
+    const double error = recovered_difference<1>(cells, boundary);
+    const double zero = view_.parameters().heat->reference_temperature, largest = zero + most[1];
+    if (view_.rank() == 0)
+      diagnostics::set_result({.name = "temperature",
+                               .unit = "K",
+                               .values = {zero - most[0], largest},
+                               .error = error / largest,
+                               .rank = 1});
+  }
+  /// `cells` per local cell with current ghosts, `boundary` per boundary face.
+  template <int Width>
+  double recovered_difference(const Vectors<Width>& cells, const Vectors<Width>& boundary) const {
     const State<D>& s = view_.fluid.state();
     const mesh::Mesh& mesh = view_.mesh;
     const Placement<D>& at = *s.placement;
-    std::vector<LinearFit<D>> fits(mesh.cells.n_local());
+    std::vector<LinearFit<D, Width>> fits(mesh.cells.n_local());
     for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
       const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
       const Index owner = mesh.owner[f];
       if (f >= mesh.n_interior) {
-        fits[owner].add(d, s.u_boundary[f - mesh.n_interior]);
+        fits[owner].add(d, boundary[f - mesh.n_interior]);
         continue;
       }
       const Index neighbour = mesh.neighbour[f];
-      fits[owner].add(d, s.u[neighbour]);
-      fits[neighbour].add(-d, s.u[owner]);
+      fits[owner].add(d, cells[neighbour]);
+      fits[neighbour].add(-d, cells[owner]);
     }
-    Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
+    Vectors<Width> gap(mesh.cells.n_local(), Vec<Width>::Zero());
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-      if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
-    return root_mean_square(gap);
+      if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - cells[c];
+    return root_mean_square<Width>(gap);
   }
   double net_outflow() const {
     const State<D>& s = view_.fluid.state();

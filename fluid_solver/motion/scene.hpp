@@ -33,6 +33,8 @@ class Force {
   /// Adds the mean of that part over the step from t to t + dt. `u`: velocity at mid-step; empty if no force needs it.
   virtual void add(double t, double dt, std::span<const Vec3> places, const Vectors<D>& u,
                    Vectors<D>& force) const = 0;
+  /// Adds the difference of that part between each boundary face and its cell, if it has one, to `beside`, which may be empty.
+  virtual void add_beside_walls(Vectors<D>&) const {}
   /// Returns the potential at time t, a function of the place [m^2/s^2]; empty if no part is a gradient.
   virtual std::function<double(const Vec3&)> potential(double t) const = 0;
   /// Largest rate of the force over the velocity at the two ends of a step [1/s].

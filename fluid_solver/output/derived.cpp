@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
@@ -233,6 +234,13 @@ FlowQuantities<D>::FlowQuantities(const Fluid<D>& fluid) : fluid_(fluid), pressu
     all_.push_back({"pressure", "Pa", 1, pressure_->p, pressure_->boundary});
   else
     all_.push_back({"pressure", "Pa", 1, keep(std::vector<double>(fluid.mesh().cells.n_local(), 0.0)), {}});
+  if (const auto& heat = fluid.parameters().heat) {
+    const auto absolute = [&](std::vector<double> values) {
+      for (double& t : values) t += heat->reference_temperature;
+      return keep(std::move(values));
+    };
+    all_.push_back({"temperature", "K", 1, absolute(s.heat.temperature), absolute(s.heat.boundary)});
+  }
 }
 
 template <int D>

@@ -247,6 +247,7 @@ template class PointValues<3>;
 template <int D>
 struct FluidSurfaces<D>::Faces {
   std::vector<double> traction, shear, yplus;
+  std::vector<double> temperature{}, heat_flux{};  // empty without heat
 };
 
 template <int D>
@@ -268,6 +269,16 @@ typename FluidSurfaces<D>::Faces FluidSurfaces<D>::faces() const {
     Eigen::Map<Vec<D>>(faces.traction.data() + b * D) = (fluid_.pressure_force()[b] + friction) / size;
     Eigen::Map<Vec<D>>(faces.shear.data() + b * D) = (friction - friction.dot(normal) * normal) / size;
     faces.yplus[b] = units[b][1];
+  }
+  const HeatLevel& heat = fluid_.state().heat;
+  if (!heat.is_solved) return faces;
+  const HeatParameters& p = *fluid_.parameters().heat;
+  faces.temperature = heat.boundary;
+  faces.heat_flux = heat.flow;
+  for (std::size_t b = 0; b < n; ++b) {
+    faces.temperature[b] += p.reference_temperature;
+    faces.heat_flux[b] *= fluid_.properties().rho * p.specific_heat /
+                          fluid_.state().placement->area[mesh.n_interior + static_cast<Index>(b)].norm();
   }
   return faces;
 }
@@ -303,6 +314,10 @@ void FluidSurfaces<D>::write(double time, const FluidContext& context) {
       fields.push_back({"y-plus", "-", Place::cells, 1, all.yplus});
     const std::vector<double> cp = pressure_coefficient(patch, pressure->boundary);
     if (!cp.empty()) fields.push_back({"pressure-coefficient", "-", Place::cells, 1, cp});
+    if (fluid_.parameters().heat) {
+      fields.push_back({"temperature", "K", Place::cells, 1, all.temperature});
+      fields.push_back({"heat-flux", "W/m^2", Place::cells, 1, all.heat_flux});
+    }
     series_.write(i, time, fluid_.moving() ? fluid_.state().points : fluid_.points_at_rest(), fields);
   }
 }

@@ -220,6 +220,51 @@ Row energies(const Fluid<D>& fluid) {
           {"pressure power [W]", e.pressure}};
 }
 
+/// Heat that is conducted and carried into the fluid through each patch at the accepted time, the range of the temperature, the heat
+/// stored above the reference temperature, and its part that no patch has supplied.
+template <int D>
+Row heat(const Fluid<D>& fluid) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  const HeatParameters& p = *fluid.parameters().heat;
+  const double capacity = fluid.properties().rho * p.specific_heat;
+  enum { volume, stored, received, patches };
+  std::vector<double> sums(patches + 2 * mesh.patches.size(), 0.0);  // of each patch: flow, faces
+  double most[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const double t = s.heat.temperature[c];
+    sums[volume] += s.placement->volume[c];
+    sums[stored] += s.placement->volume[c] * t;
+    most[0] = std::max(most[0], -t), most[1] = std::max(most[1], t);
+  }
+  sums[received] = s.heat.received;
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i) {
+    const mesh::Patch& patch = mesh.patches[i];
+    const bool is_open = condition_of(fluid.parameters().boundaries.at(patch.name)).passage != Passage::none;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Index b = f - mesh.n_interior;
+      sums[patches + 2 * i] += s.heat.flow[b];
+      if (!is_open) continue;  // the flux of a wall at the end of the step is not the mean one of the mesh
+      const double flux = s.mesh_flux.empty() ? s.phi[f] : s.phi[f] - s.mesh_flux[f];
+      sums[patches + 2 * i] -= flux * s.heat.boundary[b];
+    }
+    sums[patches + 2 * i + 1] = patch.count;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  Row row;
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+    if (sums[patches + 2 * i + 1] > 0)
+      row.emplace_back(mesh.patches[i].name + " [W]", capacity * sums[patches + 2 * i]);
+  const double zero = p.reference_temperature;
+  row.insert(row.end(), {{"mean temperature [K]", zero + sums[stored] / sums[volume]},
+                         {"least temperature [K]", zero - most[0]},
+                         {"largest temperature [K]", zero + most[1]},
+                         {"stored [J]", capacity * sums[stored]},
+                         {"imbalance [J]", capacity * (sums[stored] - sums[received])}});
+  return row;
+}
+
 /// Forces on the immersed bodies, and the leakage through their surfaces.
 template <int D>
 Row bodies(const Fluid<D>& fluid) {
@@ -268,6 +313,7 @@ std::vector<SeriesTable> tables_of(const Fluid<D>& fluid, const WallPatches& wal
   add(!p.output.flow_areas.empty(), "flow-areas.csv", [&] { return flow_areas(fluid); });
   add(true, "balance.csv", [&] { return balance(fluid); });
   add(p.output.energy_budget, "energy.csv", [&] { return energies(fluid); });
+  add(p.heat.has_value(), "heat.csv", [&] { return heat(fluid); });
   add(fluid.bodies() != nullptr, "bodies.csv", [&] { return bodies(fluid); });
   add(fluid.gaps() != nullptr, "gaps.csv", [&] { return gaps(fluid); });
   return all;

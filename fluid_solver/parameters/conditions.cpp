@@ -226,6 +226,7 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
     if (!condition.about.empty()) about.push_back(condition.about);
   }
   s.variant("type", b.type, cases, base::join(about, "; "), true);
+  declare_heat_boundary(s, b);
 }
 
 void declare_levels(config::Section& s, const FluidParameters& p) {

@@ -444,6 +444,7 @@ void declare(config::Section& s, FluidParameters& p) {
   declare_schemes(s, p);
   declare_moving_parts(s, p);
   declare_models(s, p);
+  declare_heat(s, p);
   declare_written(s, p);
   declare_levels(s, p);
   declare_conflicts(s, p);

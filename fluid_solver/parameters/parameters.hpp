@@ -45,6 +45,12 @@ struct RotationParameters {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
 };
 
+/// A layer between the fluid and surroundings of a known temperature; both of x, y, z, t.
+struct FilmParameters {
+  config::ExpressionText coefficient;        // [W/(m^2 K)]
+  config::ExpressionText ambient{"293.15"};  // [K]
+};
+
 /// Keys of all conditions; those that a condition does not read keep their defaults.
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
@@ -59,6 +65,11 @@ struct BoundaryParameters {
   bool absorbing = false;                            // inlet and outlet: lets waves out
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
+  // With `heat`, at most one of them; without any no heat is conducted through the patch.
+  std::optional<config::ExpressionText> temperature;  // [K]
+  std::optional<config::ExpressionText> heat_flux;    // [W/m^2] into the fluid
+  std::optional<FilmParameters> film;
+  bool exchanges_heat() const { return temperature || heat_flux || film; }
 };
 
 /// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b,
@@ -105,11 +116,17 @@ const FlowCondition& condition_of(const BoundaryParameters& boundary);
 inline bool is_wall(const BoundaryParameters& b) { return condition_of(b).wall; }
 inline bool gives_pressure(const BoundaryParameters& b) { return condition_of(b).row(b).pressure > 0; }
 
+struct FluidParameters;
+
 /// All names as a list, with `last` before the last one.
 std::string condition_names(const std::string& last);
 /// Declares `type` and the keys of each type.
 void declare_boundary(config::Section& section, BoundaryParameters& parameters);
 void declare_rotation(config::Section& section, RotationParameters& rotation);
+/// Declares the keys of heat in a patch.
+void declare_heat_boundary(config::Section& section, BoundaryParameters& boundary);
+/// Declares the section `heat` and its rules. Reads all other keys.
+void declare_heat(config::Section& section, FluidParameters& parameters);
 
 /// Time scheme of the pressure waves of a weakly compressible fluid.
 enum class WaveScheme { none, three_level, trapezoidal };
@@ -210,6 +227,19 @@ struct FluidOutputParameters {
   std::map<std::string, SampleParameters> samples;
 };
 
+/// Transport of heat, see heat/heat.hpp; absent if the temperature is not computed.
+struct HeatParameters {
+  enum class Convection { central, bounded };
+  double conductivity = 0;   // [W/(m K)]
+  double specific_heat = 0;  // [J/(kg K)]
+  Convection convection = Convection::central;
+  double expansion = 0;                                  // [1/K]
+  std::vector<double> gravity;                           // [m/s^2]; empty without buoyancy
+  double reference_temperature = 293.15;                 // [K]
+  config::ExpressionText initial_temperature{"293.15"};  // [K], of x, y, z
+  bool is_buoyant() const { return expansion != 0 && !gravity.empty(); }
+};
+
 struct ProbeParameters {
   Vec3 point = Vec3::Zero();  // [m]
 };
@@ -252,6 +282,7 @@ struct FluidParameters {
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::optional<CompressibilityParameters> compressibility;  // absent if neglected, which the density checks
   std::map<std::string, ProbeParameters> probes;
+  std::optional<HeatParameters> heat;
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
   Properties properties() const {
     return {density, viscosity, viscosity / density, solved_sound(compressibility, density, viscosity)};

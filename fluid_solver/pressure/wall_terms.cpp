@@ -109,6 +109,8 @@ class YieldingWalls final : public Term<D> {
       double source = -scene_.fluid.rho * (out.w[b] - from.w[b]).dot(at.area[f]) / (g * dt) -
                       scene_.boundary.wall_load()[b];
       if (!prediction_.force.empty()) source += scene_.fluid.rho * prediction_.force[p].dot(at.area[f]) / g;
+      if (!prediction_.beside_walls.empty())
+        source += scene_.fluid.rho * prediction_.beside_walls[b].dot(at.area[f]) / g;
       if (!out.gradient.empty()) source -= out.gradient[p].dot(at.oblique_of(f)) / g;
       add_response(b, source, out);
     }

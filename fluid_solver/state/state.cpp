@@ -214,6 +214,24 @@ void field(io::Archive& archive, Entries entries, const std::string& name, std::
   std::ranges::copy(copy, doubles_of(values).begin());
 }
 
+void visit(HeatLevel& h, bool has_history, io::Archive archive) {
+  archive.set_prefix("heat-");
+  field(archive, Entries::cells, "temperature", h.temperature);
+  field(archive, Entries::owned_boundary, "boundary", h.boundary);
+  field(archive, Entries::owned_boundary, "flow", h.flow);
+  field(archive, Entries::cells, "conduction", h.conduction);
+  archive.sums("received", {&h.received, 1});
+  if (!has_history) return;
+  field(archive, Entries::cells, "old-temperature", h.temperature_old);
+  field(archive, Entries::owned_boundary, "old-boundary", h.boundary_old);
+  field(archive, Entries::owned_boundary, "old-flow", h.flow_old);
+  field(archive, Entries::cells, "old-conduction", h.conduction_old);
+  field(archive, Entries::owned_boundary, "old-carried", h.carried_old);
+  field(archive, Entries::cells, "old-convection", h.convection_old);
+  field(archive, Entries::flux_faces, "old-faces", h.faces_old);
+  field(archive, Entries::flux_faces, "old-flux", h.flux_old);
+}
+
 /// The placement follows from the points.
 template <int D>
 void visit(State<D>& s, bool moving, io::Archive archive) {
@@ -253,6 +271,7 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
   }
   field(archive, Entries::owned_boundary, "openings", s.openings.now);
   field(archive, Entries::owned_boundary, "openings-old", s.openings.old);
+  if (s.heat.is_solved) visit(s.heat, s.dt_old > 0, archive);
 }
 
 }  // namespace
@@ -376,8 +395,9 @@ void write_state(io::CheckpointWriter& file, const State<D>& s) {
 
 template <int D>
 State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
-                    std::shared_ptr<const Placement<D>> at_rest) {
+                    std::shared_ptr<const Placement<D>> at_rest, bool has_heat) {
   State<D> s;
+  s.heat.is_solved = has_heat;
   visit(s, !at_rest, io::Archive(file));
   s.placement = at_rest ? std::move(at_rest) : make_placement<D>(mesh, s.points);
   return s;

@@ -220,6 +220,24 @@ struct EnergySums {
   bool is_known() const { return energy > 1e-10 * largest && reference > 0; }
 };
 
+/// Temperature T, less the reference temperature, at a level and its history. Fluxes of heat are divided by rho c. All is empty
+/// without heat.
+struct HeatLevel {
+  bool is_solved = false;           ///< the same on all ranks
+  std::vector<double> temperature;  ///< T^n per local cell, ghosts current [K]
+  std::vector<double> boundary;     ///< T^n per boundary face [K]
+  std::vector<double> flow;         ///< conducted into the fluid at t^n, per boundary face [K m^3/s]
+  /// Sum of the conducted fluxes at t^n, per local cell (ghosts are undefined) [K m^3/s].
+  std::vector<double> conduction;
+  double received = 0;  ///< stored at the start and received through the boundary since, of this rank [K m^3]
+  // At t^{n-1}.
+  std::vector<double> temperature_old, boundary_old, flow_old, conduction_old;
+  std::vector<double> carried_old;  ///< phi T out of the fluid, per boundary face [K m^3/s]
+  std::vector<double>
+      convection_old;  ///< -sum phi T of each local cell [K m^3/s]; empty if convection is bounded
+  std::vector<double> faces_old, flux_old;  ///< phi T and phi per flux face, bounded convection only
+};
+
 /// Complete input of the next step: level n and the history of the multi-step schemes.
 template <int D>
 struct State : FlowHistory<D> {
@@ -251,6 +269,8 @@ struct State : FlowHistory<D> {
   std::shared_ptr<const Placement<D>> placement;  ///< of the points at t^n
   std::vector<Vec3> points;                       ///< moving mesh only
   std::vector<double> mesh_flux;                  ///< dV_f/dt of the last step [m^3/s], moving mesh only
+
+  HeatLevel heat;
 };
 
 /// End of one sub-step.
@@ -286,8 +306,8 @@ struct Prediction {
   Vectors<D> w;      ///< given velocities at t^{n+1} per boundary face, as far as known [m/s]
   Vectors<D> u;      ///< u^p per local cell [m/s]
   Vectors<D> force;  ///< f at t^{n+1/2} per local cell [m/s^2]; empty if there is none
-  /// R/V of the cell at t^{n+1/2}, per boundary face [m/s^2], which the pressure of walls balances as it does f. Empty in a frame
-  /// at rest.
+  /// What the pressure of walls balances beside f of their cells, per boundary face at t^{n+1/2} [m/s^2]: R/V of the cell in a
+  /// rotating frame, the change of buoyancy from cell to face. Empty without either.
   Vectors<D> beside_walls;
   Vectors<D> viscous_flux;  ///< momentum flux to the surroundings, per boundary face [N]
   double weight = 0;        ///< weight of t^{n+1} in it; 0 with an explicit predictor
@@ -311,10 +331,10 @@ struct Projected {
 template <int D>
 void write_state(io::CheckpointWriter& file, const State<D>& state);
 /// `at_rest`: placement of a mesh at rest; nullptr if the file has the points. Throws Error if the file does
-/// not fit the mesh. Collective.
+/// not fit the mesh. `has_heat`: the temperature is read as well. Collective.
 template <int D>
 State<D> read_state(io::CheckpointReader& file, const mesh::Mesh& mesh,
-                    std::shared_ptr<const Placement<D>> at_rest);
+                    std::shared_ptr<const Placement<D>> at_rest, bool has_heat = false);
 
 /// Three cells in a row. The middle one is owned; its two faces are parallel and normal to the line of cells.
 struct CellTriple {

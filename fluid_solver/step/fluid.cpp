@@ -50,6 +50,7 @@ void Fluid<D>::begin_step(double time, double dt) {
   begin_.time = time;
   double rate = 0;
   for (const auto& force : step_.scene().forces) rate = std::max(rate, force->rate(time, dt));
+  if (const auto* heat = step_.heat()) rate = std::max(rate, heat->buoyancy_rate(accepted_));
   const std::optional<State<D>> moved = moved_by_boundaries();
   sizes_.begin_step(moved ? *moved : accepted_, time, dt, rate, moved.has_value(), begin_);
   statistics_.sub_steps = 0;
@@ -238,6 +239,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   }
   step_.start_terms(s);
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
+  if (auto* heat = step_.heat()) heat->start(s);
   step_.start_momentum(s);
   step_.keep();
 }

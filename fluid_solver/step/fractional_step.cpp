@@ -83,6 +83,10 @@ FractionalStep<D>::FractionalStep(const mesh::Mesh& mesh, const std::vector<Vec3
   scene_.obstacles = make_obstacles<D>(mesh, parameters, points_at_rest);
   bodies_ = dynamic_cast<const ImmersedBodies<D>*>(scene_.obstacles.get());
   gaps_ = dynamic_cast<const Gaps<D>*>(scene_.obstacles.get());
+  if (!parameters.heat) return;
+  heat_ = std::make_unique<HeatTransport<D>>(scene_, step_);
+  if (parameters.heat->is_buoyant())
+    scene_.forces.push_back(std::make_unique<Buoyancy<D>>(mesh, *heat_, *parameters.heat));
 }
 
 template <int D>
@@ -122,6 +126,7 @@ void FractionalStep<D>::predict(const State<D>& from, const FlowHistory<D>& by, 
     }
   mark(step_.end());
   scene_.obstacles->begin(step_, from, prediction_.w);
+  if (heat_) heat_->advance(from);
   predict_from_guess(from);
   projection_.prepare(from);
 }
@@ -283,6 +288,7 @@ void FractionalStep<D>::commit(State<D>& s) {
   s.placement = step_.to;
   s.blocked = scene_.obstacles->marks();
   s.points.swap(step_.points);
+  if (heat_) heat_->commit(s);
   s.mesh_flux.swap(step_.swept);
   for (double& flux : s.mesh_flux) flux /= step_.dt;
   s.dt_old = step_.dt;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "fluid_solver/heat/heat.hpp"
 #include "fluid_solver/motion/obstacles.hpp"
 #include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/pressure/pressure.hpp"
@@ -87,6 +88,8 @@ class FractionalStep {
   void start_momentum(State<D>& state) {
     for (const auto& term : momentum_terms()) term->start(state);
   }
+  /// nullptr if the temperature is not computed.
+  HeatTransport<D>* heat() const { return heat_.get(); }
   const MomentumTerms<D>& momentum_terms() { return predictor_.rate_operator().terms(); }
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }
@@ -135,6 +138,7 @@ class FractionalStep {
   KnownGradient<D> gradient_;
   const ImmersedBodies<D>* bodies_ = nullptr;  // owned by the scene as obstacles; nullptr if there are none
   const Gaps<D>* gaps_ = nullptr;              // likewise
+  std::unique_ptr<HeatTransport<D>> heat_;     // nullptr without heat
   Predictor<D> predictor_;
   FaceFlux<D> flux_;
   PressureProjection<D> projection_;

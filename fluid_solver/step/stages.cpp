@@ -208,6 +208,7 @@ void Predictor<D>::add_forces(const State<D>& from, const Vectors<D>& turned, do
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   out_.force.assign(places.size(), Vec<D>::Zero());
+  out_.beside_walls.clear();
   if (scene_.parameters.rotating_frame) {
     out_.beside_walls.resize(out_.w.size());
     for (std::size_t b = 0; b < out_.w.size(); ++b) {
@@ -217,6 +218,7 @@ void Predictor<D>::add_forces(const State<D>& from, const Vectors<D>& turned, do
     }
   }
   for (const auto& force : scene_.forces) force->add(step_.begin(), step_.dt, places, turned, out_.force);
+  for (const auto& force : scene_.forces) force->add_beside_walls(out_.beside_walls);
   for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
 }
 

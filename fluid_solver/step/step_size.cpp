@@ -177,7 +177,7 @@ void StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   for (const auto& term : terms_) term->add_limits(s, rates_);
 }
 
-/// Limit by the Coriolis force on uniform motion, which friction does not damp.
+/// Limit by the Coriolis force on uniform motion and by buoyancy, which friction does not damp.
 template <int D>
 double StepSize<D>::frame_limit() const {
   return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2) / frame_rate_ : base::infinity;
@@ -212,6 +212,16 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   for (double& limit : least) limit = std::min(limit, frame_limit());
   return {round_down(least[0]), round_down(least[1])};
+}
+
+template <int D>
+double StepSize<D>::scalar_limit(const State<D>& s) {
+  add_rates(s, true);
+  double least = base::infinity;
+  for_rates(s, [&](Index c, double convection, double) {
+    if (convection > 0) least = std::min(least, convective_limit(c) / convection);
+  });
+  return round_down(parallel::min(mesh_.comm, least));
 }
 
 template <int D>
@@ -262,6 +272,17 @@ SubStepSize<D>::SubStepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                             const FluidParameters& parameters, const MomentumTerms<D>& terms)
     : parameters_(parameters), size_(mesh, boundary, parameters.properties().nu, terms) {
   size_.set_courant(parameters.courant.value_or(0) / parameters.safety_factor);
+  if (const auto& heat = parameters.heat)
+    heat_size_.emplace(mesh, boundary, heat->conductivity / (parameters.density * heat->specific_heat),
+                       no_terms_);
+}
+
+template <int D>
+StepLimits SubStepSize<D>::limits_of(const State<D>& level) {
+  StepLimits limits = size_.limits(level);
+  if (!heat_size_) return limits;
+  const double most = heat_size_->scalar_limit(level);
+  return {std::min(limits.explicit_viscous, most), std::min(limits.implicit_viscous, most)};
 }
 
 template <int D>
@@ -271,7 +292,7 @@ void SubStepSize<D>::begin_step(const State<D>& level, double time, double dt, d
   time_ = time;
   dt_ = dt;
   size_.set_frame_rate(frame_rate);
-  if (!parameters_.time_step) limits_ = size_.limits(level);
+  if (!parameters_.time_step) limits_ = limits_of(level);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment(level, begin);
 }
 
@@ -309,7 +330,7 @@ double SubStepSize<D>::next(const State<D>& level, bool implicit, int done, doub
   if (parameters_.time_step) {
     limit = *parameters_.time_step;
   } else {
-    const StepLimits limits = done == 0 || starts_ ? limits_ : size_.limits(level);
+    const StepLimits limits = done == 0 || starts_ ? limits_ : limits_of(level);
     limit = parameters_.safety_factor * (implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
   const double n = parts(remaining, limit);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/base/constants.hpp"
@@ -24,9 +25,11 @@ struct StepLimiter {
   GlobalIndex cell = -1;
   Vec3 place = Vec3::Zero();  ///< [m]
   bool friction = false;      ///< true if friction has the larger share in its rate, else convection
-  bool frame = false;         ///< true if the Coriolis force limits the step in all cells
+  bool frame = false;         ///< true if the Coriolis force or buoyancy limits the step in all cells
   double share = 1;           ///< of the cells whose limit is less than twice this one
-  const char* cause() const { return frame ? "the Coriolis force" : friction ? "viscosity" : "convection"; }
+  const char* cause() const {
+    return frame ? "the Coriolis force or buoyancy" : friction ? "viscosity" : "convection";
+  }
 };
 /// For example: "In cell 3 at (0.75, 0.75, 0) m, convection limits them to this size."
 std::string in_words(const StepLimiter& limiter);
@@ -44,7 +47,7 @@ class StepSize {
   /// `terms`: must outlive this.
   StepSize(const mesh::Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
            const MomentumTerms<D>& terms);
-  /// Largest rate of the Coriolis force [1/s]; 0 if there is none.
+  /// Largest rate of the Coriolis force and of buoyancy [1/s]; 0 if there is none.
   void set_frame_rate(double rate) { frame_rate_ = rate; }
   void set_fourth(bool fourth) { fourth_ = fourth; }
   /// Lets implicit convection replace explicit one up to this Courant number.
@@ -52,6 +55,8 @@ class StepSize {
   /// Marks cells in which explicit convection is unstable with steps of this size, see SubStep. Collective.
   std::vector<double> fast_cells(const State<D>& state, double size);
   StepLimits limits(const State<D>& state);
+  /// Largest stable step of a scalar that the flow carries explicitly, with implicit diffusion [s]. Collective.
+  double scalar_limit(const State<D>& state);
   /// Cell that limits one treatment of the viscous term. Loops over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
 
@@ -108,10 +113,13 @@ class SubStepSize {
 
  private:
   void choose_viscous_treatment(const State<D>& level, FlowHistory<D>& begin);
+  StepLimits limits_of(const State<D>& level);
   double implicit_limit(const StepLimits& limits) const;
 
   const FluidParameters& parameters_;
   StepSize<D> size_;
+  const MomentumTerms<D> no_terms_;
+  std::optional<StepSize<D>> heat_size_;  // of the temperature
   double time_ = 0, dt_ = 0;
   StepLimits limits_;
   bool starts_ = false;

@@ -46,6 +46,7 @@ YAML = {  # page: for each block (case, section that the block is put into), or 
     "docs/how-to/choose-coupling.md": [("perpendicular-flap", "")],
     "docs/how-to/drag-and-lift.md": [("cylinder", "")],
     "docs/how-to/exchange.md": [("thermocline-solar-one-wall", ""), ("perpendicular-flap", "")],
+    "docs/how-to/heat-in-the-fluid.md": [("heated-cavity", "")],
     "docs/how-to/own-solver-python.md": [("spring-cylinder", "")],
     "docs/how-to/paraview.md": [("perpendicular-flap", "")],
     "docs/how-to/plate-for-solid.md": [("thin-plate", "participants"), ("thin-plate", "participants")],
