@@ -32,6 +32,7 @@ Terms<D> make_terms(const Scene<D>& scene, const FluidStep<D>& step, const Predi
   Terms<D> terms;
   add_wall_terms(scene, step, prediction, terms);
   add_compressible_terms(scene, step, prediction, terms);
+  add_end_terms(scene, step, prediction, terms);
   return terms;
 }
 
@@ -244,6 +245,8 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       out_.boundary[b] -= scene_.fluid.rho * potential(now.boundary_centre[b]);
   for (const auto& term : terms_) term->foresee(from, out_);
   side_.size = -1;
+  side_.floor = 0;
+  side_.known.clear();
   side_.b.assign(mesh_.cells.n_local(), 0.0);
   double size = subtract_outflow(mesh_, factor, out_.phi, side_.b);
   for (std::size_t b = 0; b < w.size(); ++b) {
@@ -255,11 +258,14 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   scene_.obstacles->before(side_.b, out_.p);
   side_.b.resize(mesh_.cells.n_owned());
   for (const auto& term : terms_) term->before(out_, side_);
-  const double floor = flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size));
+  const double floor =
+      std::max(side_.floor, flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size)));
+  for (std::size_t c = 0; c < side_.known.size(); ++c) out_.p[c] -= side_.known[c];
   const linalg::SolveStatistics solved =
       equation_.solve(now, side_.b, out_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()),
                       answer, side_.size);
   iterations_ += solved.iterations;
+  for (std::size_t c = 0; c < side_.known.size(); ++c) out_.p[c] += side_.known[c];
   scene_.obstacles->after(now, out_.p);
   for (const auto& term : terms_) term->after(out_);
   set_boundary_pressure(from);
