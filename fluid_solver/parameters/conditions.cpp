@@ -203,7 +203,7 @@ const auto& condition_table() {
   const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.friction = 0}; };
   static const std::array table{
       // Inflow with a prescribed velocity. For a compressible fluid it may let pressure waves out
-      // or have a volume or line upstream (pressure/compressible_terms).
+      // or have a volume upstream (pressure/lumped_ends).
       Entry{BoundaryType::inlet,
             {.name = "inlet",
              .about = "inlet: prescribed velocity",
