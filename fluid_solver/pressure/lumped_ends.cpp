@@ -23,8 +23,8 @@ constexpr double response_tolerance = 1e-10;
 constexpr int most_response_solves = 4;
 // Limit over the faces' conductance. Cells that follow the pressure of an end this closely are ignored.
 constexpr double least_answer = 1e-9;
-// Rounding of a known pressure in the equation of a cell, over its conductance.
-constexpr double known_rounding = 1e-14;
+// Tolerance of the equation that the known pressures allow, over what they are in it: rounding of the guess, reduced further.
+constexpr double known_rounding = 1e-20;
 // Flow rate by which a point of a table may be missed, over the largest flow rate of the table.
 constexpr double point_rounding = 1e-12;
 
@@ -139,6 +139,7 @@ class LumpedEnds final : public Term<D> {
     MPI_Allreduce(MPI_IN_PLACE, flux.data(), int(flux.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
     solve(flux, factor);
     side.known.assign(mesh_.cells.n_local(), 0.0);
+    side.ends.resize(ends_.size(), 0.0);
     double squares[2] = {};  // of what the pressures, and their changes, are in b
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const double p = pressure_[i], change = p - last(i);
@@ -147,8 +148,12 @@ class LumpedEnds final : public Term<D> {
         squares[0] += std::pow(at.conductance[f] * p, 2);
         squares[1] += std::pow(at.conductance[f] * change, 2);
       });
-      for (std::size_t c = 0; c < side.known.size(); ++c) side.known[c] += p * response_[i][c];
+      for (std::size_t c = 0; c < side.known.size(); ++c) {
+        side.known[c] += p * response_[i][c];
+        out.p[c] -= side.ends[i] * response_[i][c];
+      }
     }
+    side.ends = pressure_;
     MPI_Allreduce(MPI_IN_PLACE, squares, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
     // In a fluid at rest, the pressure of an end may be the only one.
     const double size = side.size < 0 ? std::sqrt(flux.back()) : side.size;
@@ -174,6 +179,8 @@ class LumpedEnds final : public Term<D> {
       c.stored_old[i] = std::exchange(c.stored[i], stored);
     }
     c.flow_old = std::exchange(c.flow, now);
+    // What an Euler step has damped stays so.
+    if (weight_[0] == 1) c.flow_old = c.flow, c.stored_old = c.stored;
   }
   /// A volume takes the pressure of its faces.
   void start(const Placement<D>& at, PressureLevel<D>& level) const override {

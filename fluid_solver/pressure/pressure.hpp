@@ -136,7 +136,8 @@ struct RightSide {
   double size = -1;       ///< norm for the tolerance, see PressureEquation::solve(); negative: |b|
   /// Part of p that is known, per local cell [Pa], for which b has no entry: the response to lumped ends. Empty if there is none.
   std::vector<double> known;
-  double floor = 0;  ///< what rounding leaves of the known part in b
+  double floor = 0;          ///< absolute tolerance that the rounding of the known part allows
+  std::vector<double> ends;  ///< pressures of the lumped ends in the guess of p [Pa]; empty if there are none
 };
 
 /// Feature in the pressure equation. Every function is called once per step or solve and itself loops over

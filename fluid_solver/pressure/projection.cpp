@@ -112,6 +112,11 @@ void PressureProjection<D>::extrapolate_pressure() {
     for (std::size_t k = 0; k < levels.size(); ++k)
       for (std::size_t c = 0; c < out_.p.size(); ++c) out_.p[c] += weight[k] * levels[k]->p[c];
   }
+  side_.ends.clear();
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    side_.ends.resize(levels[k]->ends.size(), 0.0);
+    for (std::size_t i = 0; i < side_.ends.size(); ++i) side_.ends[i] += weight[k] * levels[k]->ends[i];
+  }
   gradient_start_.clear();
   if (!scene_.oblique || levels.empty()) return;
   gradient_start_ = levels[0]->gradient;
@@ -125,6 +130,7 @@ template <int D>
 void PressureProjection<D>::start_from(const PressureLevel<D>* level) {
   if (!level) return extrapolate_pressure();
   out_.p = level->p;
+  side_.ends = level->ends;
   if (scene_.oblique) gradient_start_ = level->gradient;
 }
 
@@ -260,7 +266,6 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   for (const auto& term : terms_) term->before(out_, side_);
   const double floor =
       std::max(side_.floor, flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size)));
-  for (std::size_t c = 0; c < side_.known.size(); ++c) out_.p[c] -= side_.known[c];
   const linalg::SolveStatistics solved =
       equation_.solve(now, side_.b, out_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()),
                       answer, side_.size);

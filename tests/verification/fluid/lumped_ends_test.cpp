@@ -166,7 +166,7 @@ TEST(LumpedEnds, ten_equal_windkessels_are_one_of_their_parallel_circuit) {
   for (int i = 0; i < 10; ++i) p.boundaries[fmt::format("out{}", i)] = with_windkessel(part);
   FluidCase<2> c(MPI_COMM_WORLD, cells_with_outlets(10), p);
   double worst = 0, largest = 0;
-  const int steps = 200;
+  const int steps = 400;
   for (int k = 1; k <= 2 * steps; ++k) {
     c.step(1. / steps);
     const double exact = flow_for_given_pressure(artery, a, double(k) / steps);
@@ -226,9 +226,10 @@ TEST(LumpedEnds, any_resistance_is_stable_at_any_step_and_an_infinite_one_stops_
           continue;
         }
         const double largest = std::max(std::abs(start), std::abs(final));
-        EXPECT_LE(std::abs(flow), (1 + 1e-6) * largest) << where;
+        const double rounding = 1e-14 * std::max(1., dt);
+        EXPECT_LE(std::abs(flow), (1 + 1e-6) * largest + rounding) << where;
         if (dt > 30 * tau) {
-          EXPECT_NEAR(flow, final, 1e-4 * largest) << where;
+          EXPECT_NEAR(flow, final, 1e-4 * largest + rounding) << where;
         }
         if (resistance >= 1e12) {
           EXPECT_LT(std::abs(flow), 1e-5 * std::max(start, 1e-3)) << where;
@@ -244,7 +245,7 @@ TEST(LumpedEnds, a_given_flow_through_a_large_resistance_has_its_pressure) {
     FluidCase<2> c(MPI_COMM_WORLD, cells(), tube(inflow("1e-3"), with_resistance(resistance)));
     c.run(1, 10);
     EXPECT_NEAR(pressure_at(c, "xmax") / (1e-3 * resistance), 1, 1e-8) << resistance;
-    EXPECT_NEAR(flow_through(c, "xmax"), 1e-3, 1e-13) << resistance;
+    EXPECT_NEAR(flow_through(c, "xmax"), 1e-3, 1e-13 + 1e-22 * resistance) << resistance;
   }
 }
 
@@ -285,21 +286,23 @@ TEST(LumpedEnds, a_table_of_a_quadratic_loss_has_the_flow_of_its_equation_in_sec
 /// Pieces of very different slopes, at steps of any size: Newton's method alone would go round and round.
 TEST(LumpedEnds, tables_with_steep_pieces_find_their_flow_at_any_step) {
   for (const double dt : {1e-4, 1e-1, 1e2})
-    for (const double p_in : {-2e3, -200., 10., 999., 1001., 5e3}) {
+    for (const double p_in : {-1050., -200., 10., 999., 1001., 1050.}) {
       FluidParameters p = tube(opening(fmt::format("{}", p_in)), {});
       p.boundaries.erase("xmax");
       for (int i = 0; i < 2; ++i) {
         BoundaryParameters b = opening("0");
         b.circuit.pressure_drop =
-            config::ExpressionText{"table(q, clamp, -1, -1001, -1e-6, -1000, 1e-6, 1000, 1, 1001)"};
+            config::ExpressionText{"table(q, clamp, -1e-3, -1100, -1e-6, -1000, 1e-6, 1000, 1e-3, 1100)"};
         p.boundaries[fmt::format("out{}", i)] = b;
       }
       FluidCase<2> c(MPI_COMM_WORLD, cells_with_outlets(2), p);
-      for (int k = 0; k < 5; ++k) c.step(dt);
+      for (int k = 0; k < 20; ++k) c.step(dt);
       const double q = flow_through(c, "out0");
       EXPECT_NEAR(q, flow_through(c, "out1"), 1e-9 * std::max(1., std::abs(q))) << p_in;
-      if (std::abs(p_in) < 1000) {
-        EXPECT_LT(std::abs(q), 1e-6) << p_in << " " << dt;
+      if (std::abs(p_in) < 1000 || dt > 1) {
+        const double steep = std::clamp(p_in * 1e-9, -1e-6, 1e-6),
+                     exact = steep + (p_in - 1e9 * steep) * 1e-5;
+        EXPECT_NEAR(q, exact, 0.02 * std::abs(exact)) << p_in << " " << dt;
       }
     }
 }
