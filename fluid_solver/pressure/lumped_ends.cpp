@@ -68,6 +68,7 @@ class LumpedEnds final : public Term<D> {
   void prepare(const State<D>& from) override {
     before_ = &from.circuits;
     weight_ = middle_weights(step_.dt, step_.by.dt_old);
+    stored_weight_ = step_.by.dt_old > 0 ? weight_ : std::array{0.5, 0.5, 0.};
     laws_.assign(ends_.size(), EndLaw());
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       pressure_[i] = last(i);
@@ -179,8 +180,7 @@ class LumpedEnds final : public Term<D> {
       c.stored_old[i] = std::exchange(c.stored[i], stored);
     }
     c.flow_old = std::exchange(c.flow, now);
-    // What an Euler step has damped stays so.
-    if (weight_[0] == 1) c.flow_old = c.flow, c.stored_old = c.stored;
+    if (weight_[0] == 1) c.flow_old = c.flow;  // what an Euler step has damped stays so
   }
   /// A volume takes the pressure of its faces.
   void start(const Placement<D>& at, PressureLevel<D>& level) const override {
@@ -245,11 +245,11 @@ class LumpedEnds final : public Term<D> {
   }
   double past_flow(std::size_t i) const { return past_flow(*before_, i); }
   double past_stored(const CircuitsState& c, std::size_t i) const {
-    return weight_[1] * c.stored[i] + weight_[2] * c.stored_old[i];
+    return stored_weight_[1] * c.stored[i] + stored_weight_[2] * c.stored_old[i];
   }
   /// Factor of p_d at t^{n+1} in the equation of a compliance.
   double storage(const WindkesselParameters& w) const {
-    return w.compliance / step_.dt + weight_[0] / w.distal;
+    return w.compliance / step_.dt + stored_weight_[0] / w.distal;
   }
 
   /// Law of a volume V_0 at rest: dp/dt = rho c^2 (Q + given)/V_0 with the prescribed flow into it.
@@ -273,7 +273,7 @@ class LumpedEnds final : public Term<D> {
     const CircuitParameters& circuit = ends_[i].circuit;
     if (circuit.resistance) return {*circuit.resistance, 0};
     if (const auto& w = circuit.windkessel) {
-      const double share = weight_[0] / storage(*w), past = past_stored(*before_, i);
+      const double share = stored_weight_[0] / storage(*w), past = past_stored(*before_, i);
       return {w->proximal + share,
               past + share * (w->compliance / step_.dt * before_->stored[i] - past / w->distal)};
     }
@@ -367,7 +367,8 @@ class LumpedEnds final : public Term<D> {
   bool alone_ = false;  // no other condition gives the level of the pressure
   std::vector<double> pressure_;
   std::vector<EndLaw> laws_;
-  std::array<double, 3> weight_{};                        // of values at t^{n+1}, t^n, t^{n-1}
+  /// Of values at t^{n+1}, t^n, t^{n-1}: flows, and pressures of compliances, which do not jump at the start of a flow.
+  std::array<double, 3> weight_{}, stored_weight_{};
   const CircuitsState* before_ = nullptr;                 // of level n
   std::vector<std::vector<double>> response_, accepted_;  // Y per end and local cell
   std::vector<double> faces_;                             // |G_i| [m]
