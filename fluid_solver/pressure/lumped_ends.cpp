@@ -139,16 +139,22 @@ class LumpedEnds final : public Term<D> {
       for (const double b : side.b) flux.back() += b * b;
     MPI_Allreduce(MPI_IN_PLACE, flux.data(), int(flux.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
     solve(flux, factor);
-    side.known.assign(mesh_.cells.n_local(), 0.0);
     side.ends.resize(ends_.size(), 0.0);
-    double squares[2] = {};  // of what the pressures, and their changes, are in b
+    double squares[2] = {};  // of what the known pressures, and the changes of all, are in b
     for (std::size_t i = 0; i < ends_.size(); ++i) {
+      const bool is_volume = ends_[i].volume > 0;  // its pressure stays in b, whose size is that of changes
       const double p = pressure_[i], change = p - last(i);
       for_faces(i, [&](Index b, Index f) {
+        const double g = at.conductance[f];
         out.boundary[b] += p;
-        squares[0] += std::pow(at.conductance[f] * p, 2);
-        squares[1] += std::pow(at.conductance[f] * change, 2);
+        if (is_volume)
+          side.b[mesh_.owner[f]] += g * p;
+        else
+          squares[0] += g * p * g * p;
+        squares[1] += std::pow(g * change, 2);
       });
+      if (is_volume) continue;
+      side.known.resize(mesh_.cells.n_local(), 0.0);
       for (std::size_t c = 0; c < side.known.size(); ++c) {
         side.known[c] += p * response_[i][c];
         out.p[c] -= side.ends[i] * response_[i][c];
