@@ -245,7 +245,7 @@ TEST(LumpedEnds, a_given_flow_through_a_large_resistance_has_its_pressure) {
   for (const double resistance : {1e3, 1e9, 1e15}) {
     FluidCase<2> c(MPI_COMM_WORLD, cells(), tube(inflow("1e-3"), with_resistance(resistance)));
     c.run(1, 10);
-    EXPECT_NEAR(pressure_at(c, "xmax") / (1e-3 * resistance), 1, 1e-8) << resistance;
+    EXPECT_NEAR(pressure_at(c, "xmax") / (1e-3 * resistance), 1, 1e-8 + 1e-21 * resistance) << resistance;
     EXPECT_NEAR(flow_through(c, "xmax"), 1e-3, 1e-13 + 1e-22 * resistance) << resistance;
   }
 }
@@ -290,6 +290,8 @@ TEST(LumpedEnds, tables_with_steep_pieces_find_their_flow_at_any_step) {
     for (const double p_in : {-1050., -200., 10., 999., 1001., 1050.}) {
       FluidParameters p = tube(opening(fmt::format("{}", p_in)), {});
       p.boundaries.erase("xmax");
+      p.boundaries["xmin"].backflow_stabilisation =
+          true;  // else shear that enters may grow, whatever the ends do
       for (int i = 0; i < 2; ++i) {
         BoundaryParameters b = opening("0");
         b.circuit.pressure_drop =
