@@ -45,7 +45,7 @@ template <int D>
 double given_inflow(const Fluid<D>& fluid, const Placement<D>& at, double t) {
   const Boundary<D>& boundary = fluid.boundary();
   Vectors<D> w(boundary.rows().pressure.size(), Vec<D>::Zero());  // stays so at the interface
-  boundary.velocity_at(t, at.boundary_centre, w);
+  boundary.velocity_at(t, fluid.mesh(), at, w);
   double inflow = 0;
   for (const Index b : boundary.rows().of_velocity) inflow -= w[b].dot(at.area[fluid.mesh().n_interior + b]);
   return inflow;

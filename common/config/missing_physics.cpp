@@ -68,9 +68,11 @@ constexpr MissingPhysics table[] = {
      "no porous media, no fans and no local momentum sources in the fluid",
      "mesh the passages, or use another fluid solver"},
     {fluid,
-     "resistance windkessel rcr lumped impedance compliance capacitance flow-resistance loss-coefficient pressure-drop",
-     "no outlets with a resistance, a loss coefficient or a windkessel",
-     "give the outlet pressure as a function or table of time, or mesh a narrow outlet that provides the resistance"},
+     "resistance windkessel rcr lumped impedance compliance capacitance flow-resistance loss-coefficient pressure-drop inertance "
+     "circulation closed-loop heart ventricle",
+     "no circuits behind openings but a resistance, a windkessel or a pressure drop of an outlet: no inertance, no valves, no "
+     "closed circulation, none behind an inlet",
+     "use type: outlet with resistance, windkessel or pressure-drop, and an inlet with a flow rate that repeats"},
     {solid, inelastic, no_plasticity, use_calculix},
     {plate, inelastic, no_plasticity, use_calculix},
     {solid, "fracture damage crack cohesive delamination debonding failure fatigue phase-field xfem erosion",

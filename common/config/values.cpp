@@ -31,13 +31,14 @@ void check_range(double value, const Facts& facts) {
 struct Axis {
   const char *name, *unit, *expression;
 };
-constexpr std::array<Axis, 6> axes{{{"x", "m", "x"},
+constexpr std::array<Axis, 7> axes{{{"x", "m", "x"},
                                     {"y", "m", "y"},
                                     {"z", "m", "z"},
                                     {"r", "m", "sqrt(x^2 + y^2)"},
                                     {"t", "s", "t"},
-                                    {"T", "K", "T"}}};
-const std::vector<std::string> keys{"of", "at", "values", "file", "column", "outside"};
+                                    {"T", "K", "T"},
+                                    {"q", "m^3/s", "q"}}};
+const std::vector<std::string> keys{"of", "at", "values", "file", "column", "outside", "repeat"};
 
 const Axis& axis_of(const std::string& name) {
   std::vector<std::string> names;
@@ -70,7 +71,14 @@ std::vector<double> numbers(const YAML::Node& node, const char* key, const Key::
   return result;
 }
 
-std::string outside_of(const YAML::Node& node) {
+/// Rule for values beyond the ends, in the form of an expression.
+std::string outside_of(const YAML::Node& node, const Axis& axis) {
+  if (node["repeat"]) {
+    if (node["outside"]) throw Error("a table that repeats has no values outside; remove 'outside'.");
+    const double period = base::parse_quantity(word(node, "repeat"), axis.unit);
+    if (!(period > 0)) throw Error("'repeat' of a table is its period, which must be above 0.");
+    return fmt::format("repeat {}", period);
+  }
   if (!node["outside"]) return "clamp";
   const std::string outside = word(node, "outside");
   if (outside != "clamp" && outside != "error")
@@ -81,6 +89,7 @@ std::string outside_of(const YAML::Node& node) {
 /// Converts a table given as a mapping to the text of an expression in SI:
 ///   {of: t, at: [0, 2 s], values: [0, 3 bar], outside: error}   table(t, error, 0, 0, 2, 300000)
 ///   {of: z, file: profile.csv, column: speed}                   table(z, clamp, "/case/profile.csv", "speed")
+///   {of: t, at: [0, 1 s], values: [0, 3 bar], repeat: 2 s}      table(t, repeat 2, 0, 0, 1, 300000)
 /// Throws Error with a sentence without location.
 std::string table_text(const YAML::Node& node, const Key::Facts& facts, const std::filesystem::path& folder) {
   for (const auto& item : node)
@@ -88,7 +97,7 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
       throw Error("a table has no key '{}'. {}", item.first.Scalar(),
                   base::did_you_mean(item.first.Scalar(), keys, "keys"));
   const Axis& axis = axis_of(word(node, "of"));
-  std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node));
+  std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node, axis));
   if (node["file"]) {
     if (node["at"] || node["values"])
       throw Error("a table takes either 'file' or 'at' and 'values', not both.");
@@ -403,7 +412,7 @@ std::string check_kinematic_viscosity(double viscosity, double density) {
 
 namespace {
 
-/// Values of table(t, [clamp|error,] 0, 0, 2, 300000), which follow their positions. None for a table in a
+/// Values of table(t, [clamp|error|repeat P,] 0, 0, 2, 300000), which follow their positions. None for a table in a
 /// file or of a function.
 std::vector<double> values_of_table(const std::string& text) {
   std::vector<double> values;

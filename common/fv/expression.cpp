@@ -25,7 +25,7 @@ struct TableInUse {
 
 double value_in_table(void* data, double at) {
   const auto& [table, use] = *static_cast<const TableInUse*>(data);
-  if (use) use->note(at);
+  if (use && !table->repeats()) use->note(at);
   return (*table)(at);
 }
 

@@ -79,7 +79,7 @@ std::size_t place_on(const std::vector<double>& axis, double at) {
 }  // namespace
 
 GridTable GridTable::read(const std::filesystem::path& file, const std::vector<std::string>& values,
-                          Outside outside) {
+                          Outside outside, double period) {
   csv::CsvReader reader(file, "table");
   if (reader.names().empty())
     throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(),
@@ -90,6 +90,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
   GridTable table;
   table.file_ = file.string();
   table.outside_ = outside;
+  table.period_ = period;
   table.n_values_ = values.size();
   double places = 1;
   for (int a = 0; a < n_axes; ++a) {
@@ -120,7 +121,10 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
       table.data_[at * values.size() + v] = rows(r, columns.value[v]);
   }
   const auto missing = std::ranges::find(there, 0);
-  if (missing == there.end()) return table;
+  if (missing == there.end()) {
+    if (period > 0) table.check_period();
+    return table;
+  }
   std::size_t at = static_cast<std::size_t>(missing - there.begin());
   std::string where;
   for (int a = n_axes - 1; a >= 0; --a) {
@@ -133,18 +137,50 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
   throw Error("{}: the grid has no value at {}; a table must be a full grid.", file.string(), where);
 }
 
+/// Times one period apart must have the same values.
+void GridTable::check_period() const {
+  constexpr double rounding = 1e-6;
+  const std::vector<double>& times = axes_[3];
+  if (times.empty()) throw Error("{}: it has no column t, so 'repeat' has no meaning; remove it.", file_);
+  const double span = times.back() - times.front();
+  if (span > period_ * (1 + rounding))
+    throw Error(
+        "{}: the table covers {:g} s, which is longer than the period of {:g} s with which it repeats.",
+        file_, span, period_);
+  if (span < period_ * (1 - rounding)) return;
+  const std::size_t row = times.size() * n_values_, last = row - n_values_;
+  double largest = 0, apart = 0;
+  for (const double value : data_) largest = std::max(largest, std::abs(value));
+  for (std::size_t i = 0; i < data_.size(); i += row)
+    for (std::size_t v = 0; v < n_values_; ++v)
+      apart = std::max(apart, std::abs(data_[i + v] - data_[i + last + v]));
+  if (apart > rounding * largest)
+    throw Error(
+        "{}: the table repeats with a period of {:g} s, but its values at both ends of the period differ by up to {:g} m/s. "
+        "Give both the same values, or leave out the last time; values between the last time and the end of the period are "
+        "linear.",
+        file_, period_, apart);
+}
+
 void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) const {
+  if (period_ > 0) t -= period_ * std::floor((t - axes_[3].front()) / period_);
   const std::array<double, n_axes> at{x[0], x[1], x[2], t};
   std::array<std::size_t, n_axes> low{};
   std::array<double, n_axes> part{};
   for (int a = 0; a < n_axes; ++a) {
     const std::vector<double>& axis = axes_[a];
     if (axis.empty()) continue;
-    if (outside_ == Outside::error && (at[a] < axis.front() || at[a] > axis.back()))
+    const bool repeats = a == 3 && period_ > 0;
+    if (!repeats && outside_ == Outside::error && (at[a] < axis.front() || at[a] > axis.back()))
       throw Error("{}: the table covers {} = {:g} {} to {:g} {}, but its value at {:g} {} is needed.", file_,
                   axis_names[a], axis.front(), axis_units[a], axis.back(), axis_units[a], at[a],
                   axis_units[a]);
     if (axis.size() == 1) continue;
+    if (repeats && at[a] > axis.back()) {  // on the way from the last time to the first one
+      low[a] = axis.size() - 1;
+      part[a] = std::min((at[a] - axis.back()) / (axis.front() + period_ - axis.back()), 1.0);
+      continue;
+    }
     const auto above = std::upper_bound(axis.begin(), axis.end() - 1, at[a]);
     low[a] = above == axis.begin() ? 0 : static_cast<std::size_t>(above - axis.begin()) - 1;
     part[a] = std::clamp((at[a] - axis[low[a]]) / (axis[low[a] + 1] - axis[low[a]]), 0.0, 1.0);
@@ -156,7 +192,7 @@ void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) cons
     for (int a = 0; a < n_axes; ++a) {
       const bool upper = (corner >> a & 1) != 0;
       weight *= upper ? part[a] : 1 - part[a];
-      if (!axes_[a].empty()) place = place * axes_[a].size() + low[a] + (upper ? 1 : 0);
+      if (!axes_[a].empty()) place = place * axes_[a].size() + (low[a] + (upper ? 1 : 0)) % axes_[a].size();
     }
     if (weight == 0) continue;
     for (std::size_t v = 0; v < n_values_; ++v) values[v] += weight * data_[place * n_values_ + v];

@@ -78,26 +78,57 @@ void check_place_of_unit(const csv::CsvReader& rows, const std::string& name) {
 
 }  // namespace
 
-Table::Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where)
+// Relative rounding of the ends of a period in a file.
+constexpr double period_rounding = 1e-6;
+
+Table::Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where,
+             double period)
     : at_(std::move(at)),
       values_(std::move(values)),
-      integral_(at_.size(), 0),
       outside_(outside),
+      period_(period),
       where_(std::move(where)) {
   const std::string place = where_.empty() ? "" : where_ + ": ";
   if (at_.empty() || at_.size() != values_.size())
     throw Error("{}a table needs one value per point; {} values for {} points are given.", place,
                 values_.size(), at_.size());
-  for (std::size_t i = 1; i < at_.size(); ++i) {
+  for (std::size_t i = 1; i < at_.size(); ++i)
     if (!(at_[i] > at_[i - 1]))
       throw Error("{}the points of a table must increase, but {:g} is followed by {:g}.", place, at_[i - 1],
                   at_[i]);
+  if (repeats()) close(place);
+  integral_.assign(at_.size(), 0);
+  for (std::size_t i = 1; i < at_.size(); ++i)
     integral_[i] = integral_[i - 1] + 0.5 * (values_[i] + values_[i - 1]) * (at_[i] - at_[i - 1]);
+}
+
+/// Ends the points one period after the first one, with its value.
+void Table::close(const std::string& place) {
+  const double span = at_.back() - at_.front();
+  if (span > period_ * (1 + period_rounding))
+    throw Error("{}the table covers {:g}, which is longer than the period of {:g} with which it repeats.",
+                place, span, period_);
+  if (span < period_ * (1 - period_rounding)) {
+    at_.push_back(at_.front() + period_);
+    values_.push_back(values_.front());
+    return;
   }
+  const auto [low, high] = std::ranges::minmax(values_);
+  if (std::abs(values_.back() - values_.front()) > period_rounding * std::max(std::abs(low), std::abs(high)))
+    throw Error(
+        "{}the table repeats with a period of {:g}, but its values at both ends of the period differ: {:g} and {:g}. Give "
+        "both the same value, or leave out the last row; values between the last row and the end of the period are linear.",
+        place, period_, values_.front(), values_.back());
+  at_.back() = at_.front() + period_;
+  values_.back() = values_.front();
+}
+
+double Table::periods_before(double at) const {
+  return repeats() ? std::floor((at - at_.front()) / period_) : 0;
 }
 
 void Table::check_inside(double at) const {
-  if (outside_ == Outside::clamp || (at >= at_.front() && at <= at_.back())) return;
+  if (repeats() || outside_ == Outside::clamp || (at >= at_.front() && at <= at_.back())) return;
   throw Error(
       "{}the table covers {:g} to {:g}, but its value at {:g} is needed. Extend it, or use 'outside: clamp' "
       "to hold its end values.",
@@ -106,7 +137,7 @@ void Table::check_inside(double at) const {
 
 double Table::operator()(double at) const {
   check_inside(at);
-  return inside(at);
+  return inside(at - periods_before(at) * period_);
 }
 
 double Table::inside(double at) const {
@@ -118,6 +149,13 @@ double Table::inside(double at) const {
 }
 
 double Table::antiderivative(double at) const {
+  if (repeats()) {
+    const double periods = periods_before(at), whole = periods * integral_.back();
+    at = std::clamp(at - periods * period_, at_.front(), at_.back());
+    if (at <= at_.front()) return whole;
+    const auto i = static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), at) - at_.begin());
+    return whole + integral_[i - 1] + 0.5 * (at - at_[i - 1]) * (values_[i - 1] + inside(at));
+  }
   if (at <= at_.front()) return (at - at_.front()) * values_.front();
   if (at >= at_.back()) return integral_.back() + (at - at_.back()) * values_.back();
   const auto i = static_cast<std::size_t>(std::upper_bound(at_.begin(), at_.end(), at) - at_.begin());
@@ -130,7 +168,8 @@ double Table::integral(double from, double to) const {
   return antiderivative(to) - antiderivative(from);
 }
 
-Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside) {
+Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside,
+                 double period) {
   csv::CsvReader rows(file, "table");
   const std::vector<std::string>& names = rows.names();
   std::vector<double> at, values;
@@ -151,7 +190,7 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
       throw Error("{}: a table has at most {} rows. Reduce them.", rows.place(), most_rows);
   }
   if (at.empty()) throw Error("{}: this table contains no rows of numbers.", file.string());
-  Table table(std::move(at), std::move(values), outside, file.string());
+  Table table(std::move(at), std::move(values), outside, file.string(), period);
   const auto unit_of = [&](std::size_t column) {
     return column < names.size() ? csv::heading_of(names[column]).unit : std::string();
   };
@@ -159,7 +198,7 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
   return table;
 }
 
-Property::Property(const config::ExpressionText& text, const std::string& where) {
+Property::Property(const config::ExpressionText& text, const std::string& where, std::string_view variable) {
   const std::string place = where.empty() ? "" : where + ": ";
   if (const auto number = csv::number_of(text.text)) {
     constant_ = *number;
@@ -174,26 +213,31 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
     throw Error("{}cannot parse '{}' at column {}: {}.", place, text.text, problem.at + 1, problem.what);
   }
   const bool is_table = tables.size() == 1 && rest.starts_with("tab00(") && rest.ends_with(")") &&
-                        base::trim(std::string_view(rest).substr(6, rest.size() - 7)) == "T";
+                        base::trim(std::string_view(rest).substr(6, rest.size() - 7)) == variable;
+  if (!is_table && variable != "T")
+    throw Error("{}'{}' is no table of {}, such as {{of: {}, at: [0, 1], values: [0, 2]}}.", place, text.text,
+                variable, variable);
   if (!is_table)
     throw Error(
         "{}'{}' is neither a number nor a table of the temperature, such as {{of: T, at: [300 K, 600 K], "
         "values: [210 GPa, 180 GPa]}}.",
         place, text.text);
+  if (tables.front().repeats())
+    throw Error("{}a table of {} does not repeat; remove 'repeat'.", place, variable);
   for (const double value : tables.front().values())
     if (!text.key.contain(value))
       throw Error("{}{} is out of range in a table; expected a value {}.", place,
                   base::format_quantity(value, text.key.unit), config::describe_range(text.key));
   table_.push_back(std::move(tables.front()));
   use_ = &uses()[fmt::format("{} {}", where, text.text)];
-  use_->kind = Use::Kind::property;
+  use_->kind = variable == "T" ? Use::Kind::property : Use::Kind::table;
   use_->from = table_[0].at().front();
   use_->to = table_[0].at().back();
 }
 
-std::string problem_of_property(const config::ExpressionText& text) {
+std::string problem_of_property(const config::ExpressionText& text, std::string_view variable) {
   try {
-    const Property property(text, "");
+    const Property property(text, "", variable);
     return "";
   } catch (const Error& e) {
     return e.what();
@@ -263,8 +307,17 @@ std::string unquoted(const std::string& text) {
 Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   std::size_t i = 1;
   Table::Outside outside = Table::Outside::clamp;
-  if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error"))
+  double period = 0;
+  if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error")) {
     outside = arguments[i++].text == "error" ? Table::Outside::error : Table::Outside::clamp;
+  } else if (i < arguments.size() && arguments[i].text.starts_with("repeat")) {
+    const Argument after{arguments[i].at + 6, std::string(base::trim(arguments[i].text.substr(6)))};
+    period = number(after);
+    if (!(period > 0))
+      throw TextProblem{after.at, fmt::format("the period of a table must be above 0, not {:g}", period),
+                        false};
+    ++i;
+  }
   if (i >= arguments.size() || arguments[0].text.empty())
     throw TextProblem{begin, "a table has the form table(t, 0, 10, 5, 20): the variable first, then pairs",
                       false};
@@ -274,7 +327,7 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
         throw TextProblem{arguments[i + 2].at, "the file of a table is followed by at most one column",
                           false};
       return read_table(unquoted(arguments[i].text),
-                        i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside);
+                        i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside, period);
     }
     if ((arguments.size() - i) % 2 != 0)
       throw TextProblem{arguments.back().at, "a table needs pairs: a value for each point", false};
@@ -283,7 +336,7 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
       at.push_back(number(arguments[i]));
       values.push_back(number(arguments[i + 1]));
     }
-    return Table(std::move(at), std::move(values), outside, "");
+    return Table(std::move(at), std::move(values), outside, "", period);
   } catch (const Error& e) {
     throw TextProblem{begin, e.what(), true};
   }

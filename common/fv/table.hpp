@@ -19,14 +19,18 @@ class Table final {
     clamp,  ///< extrapolates the first and last values as constants
     error,  ///< throws Error for a value outside the ends
   };
-  /// `at` must increase. `where` names the table in messages. Throws Error.
-  Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where);
+  /// `at` must increase. `where` names the table in messages. With a `period` above 0, the values repeat; a table shorter than its
+  /// period is linear from its last value to its first one. Throws Error, also if a repeated table is longer than its period or
+  /// jumps at its end.
+  Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where,
+        double period = 0);
 
   double operator()(double at) const;
   /// Integral from `from` to `to`, exact for the piecewise linear function with constant extrapolation.
   double integral(double from, double to) const;
   /// Integral from the first position to `at`; never throws.
   double antiderivative(double at) const;
+  bool repeats() const { return period_ > 0; }
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& values() const { return values_; }
   /// Units in the header of the file, or empty. The numbers are as in the file.
@@ -37,12 +41,16 @@ class Table final {
   const std::string& where() const { return where_; }
 
  private:
-  friend Table read_table(const std::filesystem::path& file, const std::string& column, Outside outside);
+  friend Table read_table(const std::filesystem::path& file, const std::string& column, Outside outside,
+                          double period);
+  void close(const std::string& place);
   void check_inside(double at) const;
+  double periods_before(double at) const;
   double inside(double at) const;
 
   std::vector<double> at_, values_, integral_;  // integral_: from at_.front() to each entry
   Outside outside_;
+  double period_;  // 0 if the values do not repeat
   std::string where_;
   Units units_;
 };
@@ -50,7 +58,8 @@ class Table final {
 /// Reads a table from a CSV file (common/csv), plain or gzip, optionally with column names. The first column
 /// is the increasing axis. `column` is the name (with or without "[unit]") or number (from 1) of the values.
 /// Throws Error with file:line.
-Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside);
+Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside,
+                 double period = 0);
 
 /// Problem at a position of an expression.
 struct TextProblem {
@@ -63,18 +72,19 @@ struct TextProblem {
 /// divide are inverted.
 std::vector<double> numbers_in(std::string_view text, bool as_factors = false);
 
-/// Replaces the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
-/// "file.csv"[, column]) by tabNN(variable), padded with blanks to keep positions. Appends table number NN to
+/// Replaces the calls table(variable, [clamp|error|repeat P,] x0, y0, x1, y1, ...) and table(variable, [clamp|error|repeat P,]
+/// "file.csv"[, column]), where P is a period in the unit of the variable, by tabNN(variable), padded with blanks to keep positions. Appends table number NN to
 /// `tables`. Throws TextProblem, also if the unit in a file's header is not read: values are in the unit of the
 /// key, or scaled in the text.
 std::string take_tables(const std::string& text, std::deque<Table>& tables, std::string_view unit);
 
-/// Material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".
+/// Material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)". Another law may be a table of
+/// another variable.
 class Property final {
  public:
   Property(double constant = 0) : constant_(constant) {}  // NOLINT: a number is a property
   /// Throws Error with `where`, also for values outside the range of the key.
-  Property(const config::ExpressionText& text, const std::string& where);
+  Property(const config::ExpressionText& text, const std::string& where, std::string_view variable = "T");
 
   bool is_constant() const { return table_.empty(); }
   double operator()(double temperature) const {
@@ -102,6 +112,6 @@ class Property final {
 };
 
 /// Problem of the text of a property, such as a value outside the range of its key. Empty if it is valid.
-std::string problem_of_property(const config::ExpressionText& text);
+std::string problem_of_property(const config::ExpressionText& text, std::string_view variable = "T");
 
 }  // namespace couplet::fv

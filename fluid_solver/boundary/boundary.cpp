@@ -113,8 +113,8 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   const bool parabolic = profile == InletProfile::parabolic;
   PatchExtent e = extent_of(mesh, geometry, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
-    throw Error("boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
-                patch.name);
+    throw Error("boundaries.{}: the patch is not flat, so '{}' has no direction. Give a 'velocity'.",
+                patch.name, boundaries.at(patch.name).flow_rate ? "flow-rate" : "mean-speed");
   const double images = parabolic ? mirror<D>(mesh, geometry, patch, boundaries, e) : 1;
   if (D == 3 && parabolic &&
       std::abs(images * e.size / (std::numbers::pi * e.radius * e.radius) - 1) > round_enough)
@@ -133,6 +133,7 @@ InletShape<D> inlet_shape(const mesh::Mesh& mesh, const mesh::Geometry& geometry
   }
   const double mean = parallel::sum(mesh.comm, flow) / e.size;
   for (double& speed : shape.speed) speed /= mean;
+  shape.area = e.size;
   return shape;
 }
 
@@ -178,11 +179,11 @@ void check_names(const mesh::Mesh& mesh, const FluidParameters& parameters) {
 
 }  // namespace
 
-fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+fv::GridTable velocity_table(const std::filesystem::path& file, const VelocityTableParameters& parameters,
                              int dimension) {
   std::vector<std::string> columns{"u", "v", "w"};
   columns.resize(std::size_t(dimension));
-  return fv::GridTable::read(file, columns, outside);
+  return fv::GridTable::read(file, columns, parameters.outside, parameters.repeat.value_or(0));
 }
 
 std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& parameters,
@@ -197,8 +198,7 @@ std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& paramete
            "a body moves by the section 'motion' or with a mesh mover (`coupling.mesh`); both are missing."});
     if (!boundary.table) continue;
     try {
-      (void)velocity_table(scene.folder / boundary.table->file, boundary.table->outside,
-                           parameters.dimension);
+      (void)velocity_table(scene.folder / boundary.table->file, *boundary.table, parameters.dimension);
     } catch (const Error& error) {
       all.push_back({"boundaries." + patch + ".table.file", error.what()});
     }
@@ -217,9 +217,13 @@ GivenVelocity<D>::GivenVelocity(const mesh::Mesh& mesh, const mesh::Geometry& ge
   const std::string where = "boundaries." + patch.name;
   if (b.rotation) turning_ = turning_of(b, D, where);
   if (b.table) {
-    table_ = velocity_table(b.table->file, b.table->outside, D);
+    table_ = velocity_table(b.table->file, *b.table, D);
   } else if (b.mean_speed) {
     mean_speed_ = fv::Expression(*b.mean_speed, where + ".mean-speed");
+    shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile, boundaries);
+  } else if (b.flow_rate) {
+    mean_speed_ = fv::Expression(*b.flow_rate, where + ".flow-rate");
+    if (mean_speed_.uses_space()) throw Error("{}.flow-rate: it may depend on t only.", where);
     shape_ = inlet_shape<D>(mesh, geometry, patch, b.profile, boundaries);
   } else if (!b.velocity.empty()) {
     velocity_ = fv::make_expressions(b.velocity, D, where + ".velocity");
@@ -239,12 +243,17 @@ void GivenVelocity<D>::evaluate(double t, std::span<const Vec3> places, Vec<D>* 
 }
 
 template <int D>
+double GivenVelocity<D>::flow(double t) const {
+  return ramp_factor(parameters_, t) * mean_speed_(Vec3::Zero(), t);
+}
+
+template <int D>
 void GivenVelocity<D>::without_ramp(double t, std::span<const Vec3> places, Vec<D>* w) const {
   const std::size_t n = places.size();
   if (n == 0) return;
   const std::span<double> values(w->data(), n * D);
   if (!shape_.speed.empty()) {
-    const double mean = mean_speed_(Vec3::Zero(), t);
+    const double mean = mean_speed_(Vec3::Zero(), t) / (gives_flow() ? shape_.area : 1);
     for (std::size_t i = 0; i < n; ++i) w[i] = mean * shape_.speed[i] * shape_.direction;
   } else if (table_) {
     for (std::size_t i = 0; i < n; ++i) table_->evaluate(places[i], t, values.subspan(i * D, D));
@@ -294,20 +303,27 @@ Boundary<D>::Boundary(const mesh::Mesh& mesh, const mesh::Geometry& geometry,
   rows_.sort();
 }
 
-/// Adds absorbing patches and inlets with a volume upstream, for a compressible fluid.
+/// Adds absorbing patches and a volume upstream of the inlets, for a compressible fluid, and circuits behind outlets.
 template <int D>
 void Boundary<D>::add_openings(const mesh::Mesh& mesh, const FluidParameters& parameters) {
   const bool compressible = parameters.is_compressible();
   const bool has_upstream = compressible && parameters.compressibility->upstream_volume > 0;
+  if (has_upstream) ends_.push_back({"upstream", {}, parameters.compressibility->upstream_volume, {}, {}});
   for (const mesh::Patch& patch : mesh.patches) {
     const BoundaryParameters& b = parameters.boundaries.at(patch.name);
     const FaceRange faces{patch.first - mesh.n_interior, patch.count};
+    if (b.circuit.count() > 0) {
+      ends_.push_back({patch.name, {faces}, 0, b.circuit, {}});
+      if (b.circuit.pressure_drop)
+        ends_.back().drop.emplace(*b.circuit.pressure_drop, "boundaries." + patch.name + ".pressure-drop",
+                                  "q");
+    }
     const bool inlet = condition_of(b).passage == Passage::in;
     if (b.absorbing) absorbing_patches_.push_back({faces, inlet});
     if (!has_upstream || !inlet) continue;
     // The fluid accelerates from rest in the volume: it loses rho/2 u^2 of the pressure.
     rows_.set(faces, {.pressure = 1, .friction = 0, .inflow = 0.5}, false);
-    upstream_patches_.push_back(faces);
+    ends_.front().faces.push_back(faces);
     closed_ = false;
   }
 }
@@ -360,6 +376,21 @@ void Boundary<D>::velocity_at(double t, const std::vector<Vec3>& centres, Vector
   for (const GivenVelocity<D>& given : velocity_patches_) {
     const auto [first, count] = given.faces();
     given.average(t, {centres.data() + first, std::size_t(count)}, w.data() + first);
+  }
+}
+
+template <int D>
+void Boundary<D>::velocity_at(double t, const mesh::Mesh& mesh, const Placement<D>& at, Vectors<D>& w) const {
+  velocity_at(t, at.boundary_centre, w);
+  for (const GivenVelocity<D>& given : velocity_patches_) {
+    if (!given.gives_flow()) continue;
+    const auto [first, count] = given.faces();
+    double flow = 0;
+    for (Index b = first; b < first + count; ++b) flow -= w[b].dot(at.area[mesh.n_interior + b]);
+    flow = parallel::sum(mesh.comm, flow);
+    if (flow == 0) continue;
+    const double factor = given.flow(t) / flow;
+    for (Index b = first; b < first + count; ++b) w[b] *= factor;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "common/app/program.hpp"
 #include "common/fv/expression.hpp"
+#include "common/fv/table.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 #include "fluid_solver/state/state.hpp"
 
@@ -57,6 +58,7 @@ template <int D>
 struct InletShape {
   Vec<D> direction = Vec<D>::Zero();  ///< unit vector into the domain
   std::vector<double> speed;          ///< per face of the patch; its mean over the area is 1 to round-off
+  double area = 0;                    ///< [m^2] of the whole patch at rest
 };
 
 /// Corners of the faces of a patch, relative to the face centers.
@@ -76,6 +78,9 @@ class GivenVelocity {
   bool turns() const { return turns_; }
   /// Evaluates at points of the patch, in the order of its faces if a profile was made for them [m/s].
   void evaluate(double t, std::span<const Vec3> places, Vec<D>* w) const;
+  /// True if the flow rate is given; flow() is then that into the domain [m^3/s].
+  bool gives_flow() const { return parameters_.flow_rate.has_value(); }
+  double flow(double t) const;
   /// Means over the faces of the patch with these centers [m/s].
   void average(double t, std::span<const Vec3> centres, Vec<D>* w) const;
 
@@ -85,8 +90,8 @@ class GivenVelocity {
   const mesh::Patch* patch_;
   BoundaryParameters parameters_;
   std::vector<fv::Expression> velocity_;
-  fv::Expression mean_speed_;
-  InletShape<D> shape_;                 // if mean_speed is given
+  fv::Expression mean_speed_;           // [m/s], or the flow rate [m^3/s]
+  InletShape<D> shape_;                 // if mean_speed or flow_rate is given
   std::optional<fv::GridTable> table_;  // of the velocity
   fv::Expression turning_;              // [rad/s], if a rotation is given
   bool turns_ = false;
@@ -98,7 +103,7 @@ class GivenVelocity {
 };
 
 /// Reads the velocities of a boundary from its file, in `dimension` components. Throws Error with file:line.
-fv::GridTable velocity_table(const std::filesystem::path& file, fv::GridTable::Outside outside,
+fv::GridTable velocity_table(const std::filesystem::path& file, const VelocityTableParameters& parameters,
                              int dimension);
 
 /// Missing or invalid tables of boundaries, and walls that nothing moves, for --check.
@@ -109,6 +114,15 @@ std::vector<app::ProblemOfKey> problems_of_files(const FluidParameters& paramete
 struct AbsorbingPatch {
   FaceRange faces;
   bool inlet = false;  ///< given velocity; else given pressure
+};
+
+/// What lies behind openings outside the mesh, at one pressure: a volume before the inlets, or a circuit behind an outlet.
+struct LumpedEnd {
+  std::string name;  ///< its patch, or "upstream"
+  std::vector<FaceRange> faces;
+  double volume = 0;                 ///< [m^3]; 0 if it is a circuit
+  CircuitParameters circuit;         ///< if it is one
+  std::optional<fv::Property> drop;  ///< [Pa], of a circuit with a table of the flow rate
 };
 
 template <int D>
@@ -141,6 +155,8 @@ class Boundary {
 
   /// Sets w at time t [m/s] at faces with given velocity; interface faces keep their value.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
+  /// The same with given flow rates through the areas at that time. Collective.
+  void velocity_at(double t, const mesh::Mesh& mesh, const Placement<D>& at, Vectors<D>& w) const;
   /// True on all ranks if some walls may rotate or stretch.
   bool walls_turn() const { return turns_; }
   /// Adds the turn (see turn_of()) of walls whose velocity the case gives and varies in space, at their faces
@@ -165,9 +181,9 @@ class Boundary {
   bool has_convective_outlet() const { return !convective_patches_.empty(); }
   /// Absorbing patches, in the same order on all ranks.
   const std::vector<AbsorbingPatch>& absorbing_patches() const { return absorbing_patches_; }
-  /// Inlets of a compressible fluid with a volume or line upstream. The pressure of the volume is given at their
-  /// faces, and their given velocity is the flow into the volume.
-  const std::vector<FaceRange>& upstream_patches() const { return upstream_patches_; }
+  /// Lumped ends, in the same order on all ranks. Their pressure is given at their faces. Inlets of a compressible fluid may have a
+  /// volume upstream, into which their given velocity flows.
+  const std::vector<LumpedEnd>& ends() const { return ends_; }
   bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
 
  private:
@@ -190,7 +206,7 @@ class Boundary {
   std::vector<FaceRange> convective_patches_;  // also empty ones
   bool closed_ = true, sealed_ = true, yields_ = false, turns_ = false;
   std::vector<AbsorbingPatch> absorbing_patches_;
-  std::vector<FaceRange> upstream_patches_;
+  std::vector<LumpedEnd> ends_;
   std::vector<double> wall_mass_, wall_load_;
 };
 

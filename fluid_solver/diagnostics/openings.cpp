@@ -49,12 +49,13 @@ class FlowThroughOpenings final : public diagnostics::Diagnostic {
       const BoundaryParameters& b = view.parameters().boundaries.at(patch.name);
       const bool inlet = condition_of(b).passage == Passage::in;
       // A pressure given on purpose may drive the flow.
-      const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0";
+      const bool outlet = at_rest && gives_pressure(b) && b.pressure.text == "0" && b.circuit.count() == 0;
       const bool pressure = gives_pressure(b), total = pressure && b.backflow_stabilisation;
       if (pressure) with_pressure_.push_back(&patch);
       const bool is_closed =
-          b.velocity.empty() ? !b.mean_speed || b.mean_speed->text == "0"
-                             : std::ranges::all_of(b.velocity, [](const auto& v) { return v.text == "0"; });
+          b.velocity.empty()
+              ? (b.mean_speed ? b.mean_speed : b.flow_rate).value_or(config::ExpressionText()).text == "0"
+              : std::ranges::all_of(b.velocity, [](const auto& v) { return v.text == "0"; });
       if (inlet && !is_closed)
         fv::uses()["boundaries." + patch.name].given = "the inlet, through which fluid enters,";
       if (inlet || pressure)

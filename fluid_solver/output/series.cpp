@@ -173,6 +173,37 @@ COUPLET_PROCESSOR_CLONES CellSums sum_cells(std::span<const double> volume, cons
   return sums;
 }
 
+/// Pressure and flow of each lumped end. The pressure of an outlet is its mean over the area.
+template <int D>
+void add_ends(const Fluid<D>& fluid, Row& row) {
+  const mesh::Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  const std::vector<LumpedEnd>& ends = fluid.boundary().ends();
+  if (ends.empty()) return;
+  const auto pressure = fluid.pressure();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    double sums[3] = {};  // flow out of the fluid, area, area times pressure
+    for (const auto& [first, count] : ends[i].faces)
+      for (Index b = first; b < first + count; ++b) {
+        const Index f = mesh.n_interior + b;
+        const double area = s.placement->area[f].norm();
+        sums[0] += s.phi[f];
+        sums[1] += area;
+        if (pressure) sums[2] += area * pressure->boundary[b];
+      }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
+    if (ends[i].volume > 0) {
+      row.emplace_back("pressure upstream [Pa]", s.pressure[0] ? s.pressure[0]->ends[i] : 0);
+      row.emplace_back("flow from upstream [m^3/s]", -sums[0]);
+      continue;
+    }
+    row.emplace_back(ends[i].name + " pressure [Pa]", sums[2] / sums[1]);
+    row.emplace_back(ends[i].name + " flow [m^3/s]", s.circuits.flow[i]);
+    if (ends[i].circuit.windkessel)
+      row.emplace_back(ends[i].name + " compliance pressure [Pa]", s.circuits.stored[i]);
+  }
+}
+
 /// Volume, energy and divergence.
 template <int D>
 Row balance(const Fluid<D>& fluid) {
@@ -202,12 +233,7 @@ Row balance(const Fluid<D>& fluid) {
           {"mean divergence [1/s]", sums[divergence] / sums[volume]},
           {"mass defect [m^3/s]", sums[outflow] - sums[inflow] + sums[taken_up]},
           {"sub-steps [-]", double(fluid.statistics().sub_steps)}};
-  if (fluid.boundary().upstream_patches().empty()) return row;
-  double mouth = 0;
-  for (const auto& [first, count] : fluid.boundary().upstream_patches())
-    for (Index b = first; b < first + count; ++b) mouth -= s.phi[mesh.n_interior + b];
-  row.emplace_back("pressure upstream [Pa]", s.pressure[0] ? s.pressure[0]->upstream : 0);
-  row.emplace_back("flow from upstream [m^3/s]", parallel::sum(mesh.comm, mouth));
+  add_ends(fluid, row);
   return row;
 }
 

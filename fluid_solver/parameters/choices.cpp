@@ -101,6 +101,9 @@ double speed_of(const FluidParameters& p, const mesh::MeshFacts& mesh, double en
   for (const auto& [name, b] : p.boundaries) {
     speed = std::max(speed, largest(b.velocity, mesh, end));
     if (b.mean_speed) speed = std::max(speed, largest({*b.mean_speed}, mesh, end));
+    if (b.flow_rate)
+      speed =
+          std::max(speed, largest({*b.flow_rate}, mesh, end) / std::pow(mesh.smallest_side(), mesh.dim - 1));
   }
   return speed;
 }
@@ -161,6 +164,7 @@ double prescribed_rate(const FluidParameters& p, const PlacesOfPatch& places_of,
     const bool inlet = condition_of(b).passage == Passage::in;
     if (inlet) add(name, b.velocity);
     if (inlet && b.mean_speed) add(name, {*b.mean_speed});
+    if (inlet && b.flow_rate) add(name, {*b.flow_rate});
     if (gives_pressure(b)) add(name, {b.pressure});
   }
   if (p.motion) {

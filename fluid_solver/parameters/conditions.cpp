@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/text.hpp"
+#include "common/fv/table.hpp"
 #include "fluid_solver/parameters/parameters.hpp"
 
 namespace couplet::fluid {
@@ -51,6 +52,12 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
                  {{"error", fv::GridTable::Outside::error}, {"clamp", fv::GridTable::Outside::clamp}})
             .doc(
                 "for points or times outside the grid: error, or clamp (use the value at the nearest edge of the grid)");
+        t.value("repeat", table.repeat)
+            .unit("s", 1e-9, 1e6)
+            .positive()
+            .doc(
+                "period with which the table repeats in time; its last time has the values of the first one, or the values "
+                "between the last time and the end of the period are linear; default: it does not repeat");
       },
       "velocity from a file, instead of 'velocity'");
   s.optional_section<RotationParameters>(
@@ -70,20 +77,28 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
   s.value("mean-speed", b.mean_speed)
       .unit("m/s", 1e-9, 1e4)
       .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
+  s.value("flow-rate", b.flow_rate)
+      .unit("m^3/s", 1e-15, 1e6)
+      .doc(
+          "instead of 'velocity': flow rate into the domain, an expression of t [s], over the area of the patch at that time; in "
+          "2-D per meter of depth (m^2/s)");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc(
-          "velocity profile for mean-speed. parabolic: zero at the rim of the patch, which must be a straight line in 2-D or a "
+          "velocity profile for mean-speed and flow-rate. parabolic: zero at the rim of the patch, which must be a straight line in 2-D or a "
           "disk in 3-D; symmetry planes at the rim continue the profile");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   declare_absorbing(s, b);
   s.check(
       [&b] {
-        const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
-        if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
-        if (b.profile == InletProfile::parabolic && !b.mean_speed)
+        const int given =
+            !b.velocity.empty() + b.mean_speed.has_value() + b.flow_rate.has_value() + b.table.has_value();
+        if (given != 1) return std::string("give either 'velocity', 'mean-speed', 'flow-rate' or 'table'");
+        if (b.profile == InletProfile::parabolic && !b.mean_speed && !b.flow_rate)
           return std::string(
-              "'profile: parabolic' requires 'mean-speed'; use 'mean-speed', or remove 'profile'");
+              "'profile: parabolic' requires 'mean-speed' or 'flow-rate'; use one of them, or remove 'profile'");
+        if (b.flow_rate && b.rotation)
+          return std::string("a 'rotation' would change the given 'flow-rate'; remove one of the two");
         return std::string();
       },
       "type");
@@ -103,8 +118,64 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
       "type");
 }
 
+/// Problem of a pressure drop; empty if it is a table that never falls, because another one has several flow rates or none.
+std::string problem_of_drop(const config::ExpressionText& text) {
+  if (std::string problem = fv::problem_of_property(text, "q"); !problem.empty()) return problem;
+  const fv::Property drop(text, "", "q");
+  if (drop.is_constant()) return "a table of the flow rate is expected: {of: q, at: [...], values: [...]}";
+  if (!std::ranges::is_sorted(drop.table()->values()))
+    return "its values must not decrease with the flow rate, because several flow rates could then have the same pressure";
+  return "";
+}
+
+/// Declares what lies between an outlet and its pressure.
+void declare_circuit(config::Section& s, CircuitParameters& c) {
+  constexpr double least = 1e-6, most = 1e15;  // [Pa s/m^3]
+  s.value("resistance", c.resistance)
+      .unit("Pa s/m^3", least, most)
+      .not_negative()
+      .doc(
+          "of what lies behind the outlet: the pressure in it exceeds 'pressure' by this times the flow rate out of the "
+          "fluid; in 2-D per meter of depth (Pa s/m^2)");
+  s.optional_section<WindkesselParameters>(
+      "windkessel", c.windkessel,
+      [](config::Section& w, WindkesselParameters& p) {
+        w.value("proximal", p.proximal)
+            .unit("Pa s/m^3", least, most)
+            .not_negative()
+            .required()
+            .doc("resistance between the outlet and the compliance, 0 of a two-element Windkessel");
+        w.value("compliance", p.compliance)
+            .unit("m^3/Pa", 1e-18, 1e3)
+            .positive()
+            .required()
+            .doc("volume that the vessels behind the outlet take up per pressure");
+        w.value("distal", p.distal)
+            .unit("Pa s/m^3", least, most)
+            .positive()
+            .required()
+            .doc("resistance between the compliance and 'pressure'");
+        w.value("initial-pressure", p.initial_pressure)
+            .unit("Pa", 1e-9, 1e9)
+            .doc("of the compliance at the start, above 'pressure'");
+      },
+      "three-element Windkessel between the outlet and 'pressure': a resistance, then a compliance beside a second resistance; "
+      "in 2-D per meter of depth");
+  s.value("pressure-drop", c.pressure_drop)
+      .unit("Pa", 1e-9, 1e11)
+      .doc(
+          "table of the flow rate out of the fluid, {of: q, at: [...], values: [...]}: what the pressure in the outlet exceeds "
+          "'pressure' by. It must not decrease, and q below 0 is flow into the fluid");
+  s.check([&c] { return c.pressure_drop ? problem_of_drop(*c.pressure_drop) : std::string(); },
+          "pressure-drop");
+  s.check(
+      [&c] { return c.count() > 1 ? "give only one of 'resistance', 'windkessel' and 'pressure-drop'" : ""; },
+      c.resistance ? "resistance" : "windkessel");
+}
+
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
   s.value("pressure", b.pressure).unit("Pa", 1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
+  declare_circuit(s, b.circuit);
   s.value("backflow-stabilisation", b.backflow_stabilisation)
       .doc(
           "true: fluid that enters here comes from rest, so that 'pressure' is its total pressure and the pressure in the "
@@ -133,7 +204,7 @@ const auto& condition_table() {
   const auto without_friction = [](const BoundaryParameters&) { return FaceRow{.friction = 0}; };
   static const std::array table{
       // Inflow with a prescribed velocity. For a compressible fluid it may let pressure waves out
-      // or have a volume or line upstream (pressure/compressible_terms).
+      // or have a volume upstream (pressure/lumped_ends).
       Entry{BoundaryType::inlet,
             {.name = "inlet",
              .about = "inlet: prescribed velocity",
@@ -248,6 +319,10 @@ void declare_levels(config::Section& s, const FluidParameters& p) {
         "an incompressible fluid has no pressure waves to let out; add 'compressibility', or remove the key");
     refuse(b.absorbing && enters && upstream, where + ".absorbing",
            "the 'upstream-volume' behind this inlet already responds to the waves; remove one of the two");
+    refuse(b.absorbing && b.circuit.count() > 0, where + ".absorbing",
+           "what lies behind this outlet already responds to the waves; remove one of the two");
+    refuse(b.circuit.count() > 0 && p.rotating_frame, where + ".type",
+           "a rotating frame does not support what lies behind an outlet; give its 'pressure' only");
     refuse(
         waves && flows, where + ".type",
         "a convective outlet sets no pressure level, which a compressible fluid needs; use 'type: outlet' with 'absorbing: true'");

@@ -37,6 +37,22 @@ enum class InletProfile { uniform, parabolic };
 struct VelocityTableParameters {
   std::string file;
   fv::GridTable::Outside outside = fv::GridTable::Outside::error;
+  std::optional<double> repeat;  // period [s]; absent if they do not repeat
+};
+
+/// Three elements of a circuit: a resistance, then a compliance beside a second resistance [westerhof2009].
+struct WindkesselParameters {
+  double proximal = 0, distal = 0;  // [Pa s/m^3]
+  double compliance = 0;            // [m^3/Pa]
+  double initial_pressure = 0;      // [Pa], of the compliance, above the outlet's `pressure`
+};
+
+/// Circuit between an outlet and its `pressure`; at most one of the three.
+struct CircuitParameters {
+  std::optional<double> resistance;  // [Pa s/m^3]
+  std::optional<WindkesselParameters> windkessel;
+  std::optional<config::ExpressionText> pressure_drop;  // [Pa], table of the flow rate q [m^3/s]
+  int count() const { return resistance.has_value() + windkessel.has_value() + pressure_drop.has_value(); }
 };
 
 /// Adds omega(t) a x (x - c) to the other velocity.
@@ -58,9 +74,11 @@ struct BoundaryParameters {
   std::optional<VelocityTableParameters> table;      // instead of velocity; inlet and moving wall
   std::optional<RotationParameters> rotation;        // inlet and moving wall
   std::optional<config::ExpressionText> mean_speed;  // [m/s] into the domain, of t; inlet
-  InletProfile profile = InletProfile::uniform;      // of mean_speed
+  std::optional<config::ExpressionText> flow_rate;   // [m^3/s] into the domain, of t; inlet
+  InletProfile profile = InletProfile::uniform;      // of mean_speed or flow_rate
   std::optional<double> ramp;                        // [s], inlet and moving wall
   config::ExpressionText pressure;                   // [Pa], outlet
+  CircuitParameters circuit;                         // outlet
   bool backflow_stabilisation = true;                // outlet
   bool absorbing = false;                            // inlet and outlet: lets waves out
   std::string partner;                               // periodic

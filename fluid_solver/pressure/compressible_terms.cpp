@@ -100,142 +100,6 @@ class Compression final : public Term<D> {
   std::vector<double> past_, storage_;  // per owned cell [Pa/s], [m]; nothing is stored in closed cells
 };
 
-// Tolerance of y, whose error appears in the volume's balance.
-constexpr double response_tolerance = 1e-10;
-// Limit over the faces' conductance. Cells that follow the volume's pressure this closely are ignored.
-constexpr double least_answer = 1e-9;
-
-/// Volume V_0 at rest behind the inlets at one pressure: dp/dt = rho c^2 (q - q_out)/V_0 with prescribed
-/// inflow q and flow q_out into the mesh. Its pressure is that of the inlet faces:
-///   rate p + past = stiffness (q - q_out)
-/// It is solved together with the cells: with A y = G for the conductance G of its faces, A p = b + G p_0 gives
-/// G.p = y.(b + G p_0) before p is known, because A is symmetric.
-template <int D>
-class Upstream final : public Term<D> {
- public:
-  Upstream(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction)
-      : Term<D>(scene, step, prediction),
-        trapezoidal_(scene.parameters.compressibility->scheme == WaveScheme::trapezoidal) {
-    stiffness_ = scene.fluid.rho * scene.fluid.sound * scene.fluid.sound /
-                 scene.parameters.compressibility->upstream_volume;
-  }
-
-  void prepare(const State<D>& from) override {
-    rate_ = wave_rate(step_, trapezoidal_);
-    past_ = pressure_ = 0;
-    if (!(rate_ > 0)) return;
-    pressure_ = step_.by.pressure[0]->upstream;
-    if (!trapezoidal_) {
-      const WaveRule rule = wave_rule(step_);
-      for (std::size_t k = 0; k < rule.past.size(); ++k)
-        if (rule.past[k] != 0) past_ += rule.past[k] * step_.by.pressure[k]->upstream;
-      return;
-    }
-    past_ = -rate_ * begin() - stiffness_ * (given(*from.placement, from.w) - flow(from.phi));
-  }
-  double version() const override { return 1; }
-  /// Solves for y.
-  void respond(PressureEquation<D>& equation) override {
-    const Placement<D>& at = scene_.around(step_);
-    std::vector<double> side(mesh_.cells.n_owned(), 0.0);
-    double sums[2] = {};
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) {
-        side[mesh_.owner[f]] += at.conductance[f];
-        sums[0] += at.conductance[f];
-      }
-    response_.resize(mesh_.cells.n_local(), 0.0);
-    equation.solve(at, side, response_, response_tolerance, std::numeric_limits<double>::min());
-    for (std::size_t c = 0; c < side.size(); ++c) sums[1] += response_[c] * side[c];
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    faces_ = sums[0];
-    answer_ = sums[1];
-  }
-  /// The pressure at its faces is zero until it is known.
-  void foresee(const State<D>&, Projected<D>& out) override {
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      std::fill_n(out.boundary.begin() + first, count, 0.0);
-  }
-  /// Sets its pressure at the faces and in b.
-  void before(Projected<D>& out, RightSide& side) override {
-    const Placement<D>& at = *step_.to;
-    const double factor = step_.dt / scene_.fluid.rho;
-    double flux = 0;  // into the volume, but for what its pressure drives
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index b = first; b < first + count; ++b) {
-        const Index f = mesh_.n_interior + b;
-        flux += out.phi[f] - out.w[b].dot(at.area[f]);
-      }
-    for (std::size_t c = 0; c < side.b.size(); ++c) flux += factor * response_[c] * side.b[c];
-    flux = parallel::sum(mesh_.comm, flux);
-    const double open = faces_ - answer_;
-    if (rate_ > 0 || open > least_answer * faces_)
-      pressure_ = (stiffness_ * flux - past_) / (rate_ + stiffness_ * factor * open);
-    const double change = pressure_ - (step_.by.pressure[0] ? step_.by.pressure[0]->upstream : 0);
-    double square = 0;
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index b = first; b < first + count; ++b) {
-        const Index f = mesh_.n_interior + b;
-        out.boundary[b] = pressure_;
-        side.b[mesh_.owner[f]] += at.conductance[f] * pressure_;
-        square += std::pow(at.conductance[f] * change, 2);
-      }
-    // In a fluid at rest, the volume's pressure may be the only one.
-    const double size = std::sqrt(parallel::sum(mesh_.comm, square));
-    if (side.size >= 0) side.size = std::hypot(side.size, size);
-  }
-  void complete(PressureLevel<D>& level) const override {
-    level.upstream = pressure_;
-    if (trapezoidal_) level.upstream_end = step_.by.pressure[0] ? 2 * pressure_ - begin() : pressure_;
-  }
-  /// Uses the pressure of its faces.
-  void start(const Placement<D>& at, PressureLevel<D>& level) const override {
-    double sums[2] = {};
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index b = first; b < first + count; ++b) {
-        const double area = at.area[mesh_.n_interior + b].norm();
-        sums[0] += area * level.boundary[b], sums[1] += area;
-      }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    level.upstream = sums[0] / sums[1];
-  }
-  using Term<D>::start;
-  /// y is the guess for the next one, so that of the accepted level is stored.
-  void accept() override { accepted_ = response_; }
-  void visit(io::Archive& archive) override {
-    archive.field(mesh::Entries::cells, "upstream-response", accepted_, 1);
-    if (archive.reads()) response_ = accepted_;
-  }
-
- private:
-  using Term<D>::scene_;
-  using Term<D>::mesh_;
-  using Term<D>::step_;
-  double begin() const {
-    const PressureLevel<D>& level = *step_.by.pressure[0];
-    return level.end.empty() ? level.upstream : level.upstream_end;
-  }
-  /// Flow into the mesh by the fluxes of its faces. Collective.
-  double flow(const std::vector<double>& phi) const {
-    double sum = 0;
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index f = mesh_.n_interior + first; f < mesh_.n_interior + first + count; ++f) sum -= phi[f];
-    return parallel::sum(mesh_.comm, sum);
-  }
-  /// Flow that the inlets prescribe. Collective.
-  double given(const Placement<D>& at, const Vectors<D>& w) const {
-    double sum = 0;
-    for (const auto& [first, count] : scene_.boundary.upstream_patches())
-      for (Index b = first; b < first + count; ++b) sum -= w[b].dot(at.area[mesh_.n_interior + b]);
-    return parallel::sum(mesh_.comm, sum);
-  }
-  bool trapezoidal_;
-  double stiffness_ = 0;  // rho c^2/V_0 [Pa/m^3]
-  double rate_ = 0, past_ = 0, pressure_ = 0;
-  std::vector<double> response_, accepted_;  // y per local cell
-  double faces_ = 0, answer_ = 0;            // sum G, y.G [m]
-};
-
 // Default averaging time, in travel times of sound across the mesh.
 constexpr double mean_times = 10;
 
@@ -330,7 +194,7 @@ class AbsorbingBoundaries final : public Term<D> {
   void commit(const Projected<D>& out, State<D>& s) const override {
     const Placement<D>& at = *step_.to;
     Vectors<D> given(out.w.size(), Vec<D>::Zero());
-    scene_.boundary.velocity_at(step_.end(), at.boundary_centre, given);
+    scene_.boundary.velocity_at(step_.end(), mesh_, at, given);
     std::vector<double> means, now;
     means_of(s.openings.now, out.boundary, *s.placement, means);
     s.openings.old.swap(s.openings.now);
@@ -402,7 +266,6 @@ void add_compressible_terms(const Scene<D>& scene, const FluidStep<D>& step, con
   add_term<AbsorbingBoundaries<D>>(!scene.boundary.absorbing_patches().empty(), scene, step, prediction,
                                    terms);
   add_term<Compression<D>>(scene.is_compressible(), scene, step, prediction, terms);
-  add_term<Upstream<D>>(!scene.boundary.upstream_patches().empty(), scene, step, prediction, terms);
 }
 
 template decltype(add_compressible_terms<2>) add_compressible_terms<2>;

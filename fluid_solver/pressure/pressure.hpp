@@ -134,6 +134,10 @@ double wave_rate(const FluidStep<D>& step, bool trapezoidal) {
 struct RightSide {
   std::vector<double> b;  ///< per owned cell
   double size = -1;       ///< norm for the tolerance, see PressureEquation::solve(); negative: |b|
+  /// Part of p that is known, per local cell [Pa], for which b has no entry: the response to lumped ends. Empty if there is none.
+  std::vector<double> known;
+  double floor = 0;          ///< absolute tolerance that the rounding of the known part allows
+  std::vector<double> ends;  ///< pressures of the lumped ends in the guess of p [Pa]; empty if there are none
 };
 
 /// Feature in the pressure equation. Every function is called once per step or solve and itself loops over
@@ -200,11 +204,15 @@ void add_term(bool has, const Scene<D>& scene, const FluidStep<D>& step, const P
 template <int D>
 void add_wall_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                     Terms<D>& terms);
-/// Adds those of weak compressibility: of openings that let pressure waves out, of the cells, of a volume or line behind
-/// the inlets.
+/// Adds those of weak compressibility: of openings that let pressure waves out, of the cells.
 template <int D>
 void add_compressible_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
                             Terms<D>& terms);
+
+/// Adds that of lumped ends: a volume behind the inlets, circuits behind outlets.
+template <int D>
+void add_end_terms(const Scene<D>& scene, const FluidStep<D>& step, const Prediction<D>& prediction,
+                   Terms<D>& terms);
 
 /// Second stage of a step: sum g (p_N - p_P) = (rho/dt) sum phi^p, p = p^{n+1/2}, in passes on non-orthogonal
 /// meshes. Features extend it by a list of terms, which is empty for an incompressible fluid and given walls.

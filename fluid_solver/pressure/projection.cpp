@@ -32,6 +32,7 @@ Terms<D> make_terms(const Scene<D>& scene, const FluidStep<D>& step, const Predi
   Terms<D> terms;
   add_wall_terms(scene, step, prediction, terms);
   add_compressible_terms(scene, step, prediction, terms);
+  add_end_terms(scene, step, prediction, terms);
   return terms;
 }
 
@@ -111,6 +112,11 @@ void PressureProjection<D>::extrapolate_pressure() {
     for (std::size_t k = 0; k < levels.size(); ++k)
       for (std::size_t c = 0; c < out_.p.size(); ++c) out_.p[c] += weight[k] * levels[k]->p[c];
   }
+  side_.ends.clear();
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    side_.ends.resize(levels[k]->ends.size(), 0.0);
+    for (std::size_t i = 0; i < side_.ends.size(); ++i) side_.ends[i] += weight[k] * levels[k]->ends[i];
+  }
   gradient_start_.clear();
   if (!scene_.oblique || levels.empty()) return;
   gradient_start_ = levels[0]->gradient;
@@ -124,6 +130,7 @@ template <int D>
 void PressureProjection<D>::start_from(const PressureLevel<D>* level) {
   if (!level) return extrapolate_pressure();
   out_.p = level->p;
+  side_.ends = level->ends;
   if (scene_.oblique) gradient_start_ = level->gradient;
 }
 
@@ -243,6 +250,8 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       out_.boundary[b] -= scene_.fluid.rho * potential(now.boundary_centre[b]);
   for (const auto& term : terms_) term->foresee(from, out_);
   side_.size = -1;
+  side_.floor = 0;
+  side_.known.clear();
   side_.b.assign(mesh_.cells.n_local(), 0.0);
   double size = subtract_outflow(mesh_, factor, out_.phi, side_.b);
   for (std::size_t b = 0; b < w.size(); ++b) {
@@ -254,11 +263,13 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   scene_.obstacles->before(side_.b, out_.p);
   side_.b.resize(mesh_.cells.n_owned());
   for (const auto& term : terms_) term->before(out_, side_);
-  const double floor = flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size));
+  const double floor =
+      std::max(side_.floor, flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size)));
   const linalg::SolveStatistics solved =
       equation_.solve(now, side_.b, out_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()),
                       answer, side_.size);
   iterations_ += solved.iterations;
+  for (std::size_t c = 0; c < side_.known.size(); ++c) out_.p[c] += side_.known[c];
   scene_.obstacles->after(now, out_.p);
   for (const auto& term : terms_) term->after(out_);
   set_boundary_pressure(from);

@@ -238,7 +238,8 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
   std::size_t levels = 0;
   while (levels < s.pressure.size() && s.pressure[levels]) ++levels;
   archive.common("state", s.time, s.dt_old, s.implicit, s.start, s.ledger, s.largest_speed, s.turns, levels,
-                 s.openings.mean);
+                 s.openings.mean, s.circuits.flow, s.circuits.flow_old, s.circuits.stored,
+                 s.circuits.stored_old);
   field(archive, Entries::cells, "velocity", s.u);
   field(archive, Entries::owned_boundary, "wall-turn", s.turn);
   field(archive, Entries::owned_boundary, "given-velocity", s.w);
@@ -249,7 +250,7 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
     const auto level = archive.reads() ? std::make_shared<PressureLevel<D>>()
                                        : std::const_pointer_cast<PressureLevel<D>>(s.pressure[k]);
     const std::string name = "pressure-" + std::to_string(k);
-    archive.common(name + "-level", level->time, level->upstream, level->upstream_end);
+    archive.common(name + "-level", level->time, level->ends, level->ends_end);
     field(archive, Entries::cells, name, level->p);
     field(archive, Entries::owned_boundary, name + "-boundary", level->boundary);
     field(archive, Entries::cells, name + "-gradient", level->gradient);

@@ -173,10 +173,10 @@ struct PressureLevel {
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
   /// (1/V) sum p_f S per local cell [Pa/m]; only in the latest level (non-orthogonal meshes: two).
   Vectors<D> gradient;
+  /// Per lumped end: its pressure above the one given behind it, and at the end of the step with the trapezoidal rule [Pa].
+  std::vector<double> ends, ends_end;
   // Compressible fluids only.
-  double upstream = 0;      ///< of the volume or line behind the inlets [Pa]
   std::vector<double> end;  ///< trapezoidal rule only: p at the end of the step, per local cell [Pa]
-  double upstream_end = 0;  ///< likewise, of the volume [Pa]
   /// Sum of V dp/dt/(rho c^2) over this rank's cells at the end of the step [m^3/s]; not saved.
   double taken_up = 0;
 };
@@ -186,6 +186,12 @@ struct PressureLevel {
 /// inlet [Pa].
 struct OpeningsState {
   std::vector<double> now, old, mean;
+};
+
+/// Circuits behind outlets at t^n and t^{n-1}, per lumped end; of no use for a volume.
+struct CircuitsState {
+  std::vector<double> flow, flow_old;      ///< out of the fluid, relative to a moving outlet [m^3/s]
+  std::vector<double> stored, stored_old;  ///< pressure of the compliance above the one behind it [Pa]
 };
 
 /// Start of a flow. A fluid at rest starts with an impulse, whose pressure does not predict later ones.
@@ -254,6 +260,7 @@ struct State : FlowHistory<D> {
   std::vector<double> phi;                 ///< absolute volume flux per flux face at t^n [m^3/s]
   std::vector<double> memory, memory_old;  ///< delta^n, delta^{n-1} per interior face [m^3/s]
 
+  CircuitsState circuits;  ///< empty without lumped ends
   OpeningsState openings;  ///< empty without absorbing boundaries and a line
 
   /// Cells in a closed gap, per local cell; nullptr if there are none.

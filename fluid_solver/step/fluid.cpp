@@ -62,7 +62,7 @@ template <int D>
 std::optional<State<D>> Fluid<D>::moved_by_boundaries() const {
   if (accepted_.largest_speed > 0) return {};
   State<D> moved = accepted_;
-  boundary_.velocity_at(time_ + dt_, moved.placement->boundary_centre, moved.w);
+  boundary_.velocity_at(time_ + dt_, mesh_, *moved.placement, moved.w);
   double speed = 0, inside = 0;
   for (const Vec<D>& w : moved.w) speed = std::max(speed, w.norm());
   for (const Vec<D>& u : moved.u) inside = std::max(inside, u.norm());
@@ -80,7 +80,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
   if (!interface_velocity.empty())
     for (std::size_t b = 0; b < w.size(); ++b)
       if (boundary_.is_interface(b)) w[b] = accepted_.w[b] + s * (interface_velocity[b] - accepted_.w[b]);
-  boundary_.velocity_at(time_ + done, step.to->boundary_centre, w);
+  boundary_.velocity_at(time_ + done, mesh_, *step.to, w);
   boundary_.convect(mesh_, *level().placement, level().u, level().w, step.dt, w);
   return w;
 }
@@ -206,7 +206,7 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
   // first step, which an elastic wall must feel. A given field is fitted to its boundaries instead.
   s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
   if (s.start == Start::flowing) {
-    boundary_.velocity_at(time, at.boundary_centre, s.w);
+    boundary_.velocity_at(time, mesh_, at, s.w);
     if (boundary_.walls_turn()) {
       s.turn.assign(s.w.size(), Vec<D>::Zero());
       boundary_.add_turn(mesh_, geometry.points, time, s.turn);

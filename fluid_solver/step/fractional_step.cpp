@@ -272,7 +272,7 @@ void FractionalStep<D>::commit(State<D>& s) {
   const std::size_t with_gradient = scene_.oblique ? 2 : 1;
   if (auto& last = s.pressure[with_gradient]; last && !last->gradient.empty())
     last = std::make_shared<PressureLevel<D>>(
-        PressureLevel<D>{last->time, last->p, last->boundary, {}, last->upstream, {}});
+        PressureLevel<D>{last->time, last->p, last->boundary, {}, last->ends, {}, {}});
   s.u_boundary_old.swap(s.u_boundary);
   s.w = projected_.w;
   scene_.boundary.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);

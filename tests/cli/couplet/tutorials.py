@@ -41,6 +41,7 @@ FIGURES = {  # page: (picture that its commands draw, width of the figure)
     "how-to/pressure-vessel": ("vessel/out/vessel/equivalent-stress.png", 560),
     "how-to/tank-weather": ("tank/out/tank/days.png", 760),
     "how-to/thermal-stress": ("strip/out/strip/temperature.png", 800),
+    "how-to/waveforms": ("beat/out/fluid/balance.png", 760),
     "how-to/accuracy": ("beam/out/study/order-tip.png", 640),
     "how-to/calculix-deck": ("arm/out/solid/equivalent-stress.png", 640),
     "how-to/own-mesh": ("lug/out/lug/equivalent-stress.png", 560),

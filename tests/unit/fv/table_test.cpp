@@ -238,6 +238,63 @@ TEST(Table, files_are_sought_beside_the_yaml) {
                    3);
 }
 
+TEST(Table, repeats_with_its_period) {
+  // Linear from the last value to the first one, also before the first point.
+  const Table wave({1, 2, 4}, {10, 20, -20}, Outside::error, "", 5);
+  EXPECT_DOUBLE_EQ(wave(1.5), 15);
+  EXPECT_DOUBLE_EQ(wave(5), -5);
+  for (const double t : {1., 1.5, 2., 3., 4., 4.5, 5.5})
+    for (const int n : {-3, 1, 1000}) EXPECT_NEAR(wave(t + 5 * n), wave(t), 1e-10) << t << " " << n;
+  EXPECT_NEAR(wave(6 - 1e-12), wave(6 + 1e-12), 1e-9);
+  EXPECT_DOUBLE_EQ(wave.integral(1, 6), 15 - 10);
+  EXPECT_NEAR(wave.integral(1.5, 16.5), 3 * (15 - 10), 1e-12);
+  EXPECT_NEAR(wave.integral(-4, 6), 2 * (15 - 10), 1e-12);
+  const Table whole({0, 1, 2}, {3, 4, 3}, Outside::clamp, "", 2);
+  EXPECT_DOUBLE_EQ(whole(5), 4);
+  EXPECT_DOUBLE_EQ(whole(-0.5), 3.5);
+  EXPECT_DOUBLE_EQ(Table({0}, {3}, Outside::clamp, "", 2)(7), 3);
+}
+
+TEST(Table, that_is_longer_than_its_period_or_jumps_at_its_end_is_refused) {
+  EXPECT_THAT(
+      [] {
+        Table({0, 1, 3}, {1, 2, 1}, Outside::clamp, "inlet", 2);
+      },
+      ThrowsMessage<Error>(HasSubstr("inlet: the table covers 3, which is longer than the period of 2")));
+  EXPECT_THAT(
+      [] {
+        Table({0, 1, 2}, {1, 2, 1.5}, Outside::clamp, "", 2);
+      },
+      ThrowsMessage<Error>(HasSubstr("its values at both ends of the period differ: 1 and 1.5")));
+}
+
+TEST(Table, repeats_as_a_mapping_in_a_call_and_of_a_file) {
+  const Expression beat(
+      read_loads("pressure: {of: t, at: [0, 0.3 s], values: [0, 3 bar], repeat: 1000 ms}").pressure);
+  EXPECT_DOUBLE_EQ(beat(Vec3::Zero(), 0.1), 1e5);
+  EXPECT_DOUBLE_EQ(beat(Vec3::Zero(), 7.3), 3e5);
+  EXPECT_NEAR(beat(Vec3::Zero(), 0.65), 1.5e5, 1e-9);
+  EXPECT_NEAR(value_of("2*table(t/60, repeat 0.5, 0, 0, 0.25, 1)", Vec3::Zero(), 30 * 5 + 15), 2, 1e-12);
+  const CsvFile file("t [s], p [Pa]\n0, 0\n1, 8\n2, 0\n");
+  EXPECT_NEAR(value_of(fmt::format("table(t, repeat 2, \"{}\", p)", file.path()), Vec3::Zero(), 11.5), 4,
+              1e-12);
+  EXPECT_THAT([] { value_of("table(t, repeat 0, 0, 0, 1, 1)", Vec3::Zero(), 0); },
+              ThrowsMessage<Error>(HasSubstr("the period of a table must be above 0, not 0")));
+  EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], values: [0, 1], repeat: -1 s}"); },
+              ThrowsMessage<Error>(HasSubstr("'repeat' of a table is its period, which must be above 0")));
+  EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], values: [0, 1], repeat: 2 m}"); },
+              ThrowsMessage<Error>(HasSubstr("case.yaml:1")));
+  EXPECT_THAT(
+      [] { read_loads("pressure: {of: t, at: [0, 1], values: [0, 1], repeat: 2 s, outside: clamp}"); },
+      ThrowsMessage<Error>(HasSubstr("a table that repeats has no values outside; remove 'outside'")));
+  EXPECT_THAT(problem_of_property({"table(T, repeat 200, 300, 1, 400, 2)"}), HasSubstr("does not repeat"));
+}
+
+TEST(Property, may_be_a_table_of_another_variable) {
+  EXPECT_DOUBLE_EQ(Property({"table(q, clamp, 0, 0, 2, 8)"}, "drop", "q")(0.5), 2);
+  EXPECT_THAT(problem_of_property({"table(T, 0, 0, 2, 8)"}, "q"), HasSubstr("is no table of q"));
+}
+
 TEST(Property, is_a_number_or_a_table_of_the_temperature) {
   EXPECT_EQ(Property({"5"}, "k")(300), 5);
   const Property alpha({"table(T, clamp, 300, 1e-5, 400, 2e-5)"}, "alpha");

@@ -63,6 +63,24 @@ TEST(VelocityTable, is_linear_in_space_and_time_between_its_places) {
   }
 }
 
+TEST(VelocityTable, repeats_in_time) {
+  const fs::path file = folder_of("repeated-table") / "in.csv";
+  write(file, "t,y,u,v\n0,0,0,0\n0,1,1,0\n0.3,0,0,0\n0.3,1,4,0\n");
+  const auto value = [&](double period, double y, double t) {
+    std::array<double, 2> values{};
+    fv::GridTable::read(file, {"u", "v"}, fv::GridTable::Outside::error, period)
+        .evaluate(Vec3(0, y, 0), t, values);
+    return values[0];
+  };
+  for (const int n : {-2, 0, 7}) {
+    EXPECT_NEAR(value(1, 1, 0.1 + n), 2, 1e-13);
+    EXPECT_NEAR(value(1, 0.5, 0.65 + n), 1.25, 1e-13);  // between the last time and the end of the period
+  }
+  EXPECT_THAT(support::error_of([&] { value(0.2, 1, 0); }),
+              ::testing::HasSubstr("longer than the period of 0.2 s"));
+  EXPECT_THAT(support::error_of([&] { value(0.3, 1, 0); }), ::testing::HasSubstr("differ by up to 3 m/s"));
+}
+
 std::string refusal(const fs::path& file, const std::string& text, double y = 0.5) {
   write(file, text);
   return support::error_of([&] {
