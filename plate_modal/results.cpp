@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/base/point_tree.hpp"
@@ -14,26 +13,6 @@
 
 namespace couplet::plate {
 namespace {
-
-/// The whole surface on rank 0 as a mesh for output; other ranks write none of it.
-mesh::Mesh surface_mesh(MPI_Comm comm, const modes::ModalModel& whole) {
-  const modes::ModalModel none;
-  const modes::ModalModel& model = parallel::comm_rank(comm) == 0 ? whole : none;
-  mesh::Mesh mesh;
-  mesh.comm = comm;
-  mesh.dim = 3;
-  mesh.cells = parallel::IndexMap(comm, model.faces.size(), {}, {});
-  mesh.points = parallel::IndexMap(comm, Index(model.vertices.size()), {}, {});
-  mesh.cell_points = model.faces;
-  for (Index f = 0; f < model.faces.size(); ++f)
-    mesh.cell_type.push_back(model.faces[f].size() == 3 ? mesh::CellType::triangle
-                                                        : mesh::CellType::quadrilateral);
-  mesh.cell_id.resize(model.faces.size());
-  mesh.point_id.resize(model.vertices.size());
-  std::iota(mesh.cell_id.begin(), mesh.cell_id.end(), 0);
-  std::iota(mesh.point_id.begin(), mesh.point_id.end(), 0);
-  return mesh;
-}
 
 /// Logs the size, which reveals a mesh in another unit.
 void log_size(const Structure& structure) {
@@ -76,7 +55,8 @@ PlateResults::PlateResults(const Structure& structure)
     : structure_(structure),
       active_(!structure.context().output_folder.empty()),
       root_(parallel::comm_rank(structure.context().comm) == 0),
-      surface_(surface_mesh(structure.context().comm, structure.model())) {
+      surface_(mesh_of_surface(structure.context().comm, structure.model().vertices.size(),
+                               structure.model().faces)) {
   const modes::ModalModel& model = structure.model();
   mesh::on_root(structure.context().comm, [&] {
     double size = 0;

@@ -272,7 +272,9 @@ bool Job::has_linear_structures() const {
   bool found = false;
   for (const JobMember& m : members) {
     if (m.program != "solid_solver" && m.program != "plate_modal") continue;
-    if (config::text_of(*document, "participants." + m.participant + ".kinematics") == "finite-strain")
+    const std::string participant = "participants." + m.participant;
+    if (config::text_of(*document, participant + ".kinematics") == "finite-strain" ||
+        !config::keys_of(*document, participant + ".body").empty())  // a rigid body rotates
       return false;
     found = true;
   }

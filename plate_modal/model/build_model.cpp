@@ -108,27 +108,32 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
           name, patch);
 }
 
-/// File of the mid-surface; a drawing is meshed first.
-std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder) {
+/// File of the mesh; a drawing is meshed first.
+std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder, int dimension) {
   const std::filesystem::path file = folder / *p.mesh;
   mesh::check_mesh_file(file, p.mesh_parameters);
-  if (file.extension() == ".geo") return mesh::mesh_geo(file, 2, p.mesh_parameters);
+  if (file.extension() == ".geo") return mesh::mesh_geo(file, dimension, p.mesh_parameters);
   return mesh::is_foreign(file.extension()) ? file : mesh::convert_mesh(file);
+}
+
+/// Mesh of a file with scaled lengths.
+mesh::RawMesh read_scaled(const std::filesystem::path& file, double scale) {
+  mesh::RawMesh raw = mesh::is_foreign(file.extension()) ? mesh::read_foreign(file) : mesh::read_msh(file);
+  for (Vec3& x : raw.points) x *= scale;
+  return raw;
 }
 
 /// Mid-surface of the mesh in the parameters, with scaled lengths.
 Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
-  const std::filesystem::path file = mesh_file(p, folder);
-  const bool is_foreign = mesh::is_foreign(file.extension());
-  mesh::RawMesh raw = is_foreign ? mesh::read_foreign(file) : mesh::read_msh(file);
+  const std::filesystem::path file = mesh_file(p, folder, 2);
+  mesh::RawMesh raw = read_scaled(file, p.mesh_scale);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
         "The mesh '{}' is not two-dimensional. The mid-surface of a plate needs a 2-D mesh with its surface "
         "in a physical group.",
         (folder / *p.mesh).string());
-  for (Vec3& x : raw.points) x *= p.mesh_scale;
   std::vector<int> entities;
-  if (!is_foreign) entities = mesh::read_boundary_entities(file);
+  if (!mesh::is_foreign(file.extension())) entities = mesh::read_boundary_entities(file);
   entities.resize(raw.boundary_patch.size(), 0);  // none of the patch 'rest'
   Midsurface surface = midsurface_of(raw, entities);
   for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
@@ -229,6 +234,10 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
 }
 
 }  // namespace
+
+mesh::RawMesh read_raw(const Parameters& p, const std::filesystem::path& folder, int dimension) {
+  return read_scaled(mesh_file(p, folder, dimension), p.mesh_scale);
+}
 
 PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& name) {
   check_names(surface, p, name);

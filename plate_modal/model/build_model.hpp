@@ -31,6 +31,9 @@ struct Built {
   std::string note;           ///< information for the user; may be empty
 };
 
+/// Mesh of the parameters with scaled lengths, only on this rank. A drawing is meshed in this many dimensions.
+mesh::RawMesh read_raw(const Parameters& parameters, const std::filesystem::path& case_folder, int dimension);
+
 /// Assigns materials to cells and supports to patches of the mid-surface. Throws Error with zones and patches
 /// that are missing in the mesh or have no entry.
 PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std::string& name);

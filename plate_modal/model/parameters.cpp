@@ -43,7 +43,9 @@ void declare_layers(config::Section& s, Parameters& p) {
 
 void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh", p.mesh)
-      .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
+      .doc(
+          "mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh); with 'body' the "
+          "mesh that has its surface");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
@@ -184,19 +186,49 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
 }
 
+/// Rejects keys of a plate or of modes for a rigid body.
+void check_body_alone(config::Section& s, const Parameters& p) {
+  const auto of_no_use = [&](const char* key, auto&& is_given) {
+    s.check([&p, is_given] { return p.body && is_given() ? "it has no effect with 'body'; remove it" : ""; },
+            key);
+  };
+  of_no_use("analysis", [&p] { return p.analysis != Parameters::Analysis::dynamic; });
+  of_no_use("modes", [&p] { return p.modes_file || p.number || p.cavity; });
+  of_no_use("material", [&p] { return p.material.density > 0 || p.material.youngs_modulus > 0; });
+  of_no_use("thickness", [&p] { return p.thickness > 0; });
+  of_no_use("zones", [&p] { return !p.zones.empty(); });
+  of_no_use("boundaries", [&p] { return !p.boundaries.empty(); });
+  of_no_use("time-scheme", [&p] { return p.time_scheme.type != time::TimeScheme::trapezoidal; });
+  of_no_use("damping", [&p] { return p.damping.has_value(); });
+  of_no_use("load", [&p] { return p.load.has_value(); });
+  of_no_use("contact", [&p] { return p.contact.has_value(); });
+  of_no_use("initial-amplitudes", [&p] { return !p.initial_amplitudes.empty(); });
+  s.check([&p] { return p.body ? problem_of_velocity(*p.body, p.initial_velocity) : ""; },
+          "initial-velocity");
+  s.check(
+      [&p] {
+        return p.body && p.mesh.has_value() == p.body->surface.empty()
+                   ? "a body with a surface needs both 'mesh' and 'body.surface', the patches of the mesh that are its surface"
+                   : "";
+      },
+      "body");
+}
+
 void check_together(config::Section& s, Parameters& p) {
   using Analysis = Parameters::Analysis;
   const auto refuse = [&](const char* key, const char* why, auto&& is_wrong) {
     s.check([why, is_wrong] { return is_wrong() ? why : ""; }, key);
   };
   refuse("mesh", "give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program)",
-         [&p] { return p.mesh.has_value() == p.modes_file.has_value(); });
+         [&p] { return !p.body && p.mesh.has_value() == p.modes_file.has_value(); });
+  const auto is_plate = [&p] { return p.mesh && !p.body; };
   const char* plate = p.mesh ? "mesh" : "modes";
-  refuse(plate, "a plate needs 'thickness' above 0", [&p] { return p.mesh && !(p.thickness > 0); });
+  refuse(plate, "a plate needs 'thickness' above 0",
+         [&p, is_plate] { return is_plate() && !(p.thickness > 0); });
   refuse(plate, "a plate needs 'material.density' above 0",
-         [&p] { return p.mesh && !(p.material.density > 0); });
+         [&p, is_plate] { return is_plate() && !(p.material.density > 0); });
   refuse(plate, "a plate needs 'material.youngs-modulus' above 0",
-         [&p] { return p.mesh && !(p.material.youngs_modulus > 0); });
+         [&p, is_plate] { return is_plate() && !(p.material.youngs_modulus > 0); });
   refuse("contact", "contact requires a dynamic analysis; remove it",
          [&p] { return p.contact && p.analysis != Analysis::dynamic; });
   refuse("contact", "with 'modes.file' the material is unknown: give 'stiffness'",
@@ -228,9 +260,12 @@ void declare(config::Section& s, Parameters& p) {
   declare_place(s, p);
   declare_modes(s, p);
   declare_loads(s, p);
+  s.optional_section<BodyParameters>(
+      "body", p.body, [](config::Section& b, BodyParameters& v) { declare(b, v); },
+      "a rigid body with up to six degrees of freedom and large rotations, instead of modes");
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s", 1e-9, 1e4)
-      .doc("initial velocity of the whole structure");
+      .doc("initial velocity of the whole structure; of a rigid body, of its reference point");
   s.value("initial-amplitudes", p.initial_amplitudes)
       .unit("m", 1e-9, 1e4)
       .doc("initial amplitudes of the modes: for each mode, the displacement where it is largest");
@@ -242,9 +277,9 @@ void declare(config::Section& s, Parameters& p) {
             .unit("m", 1e-9, 1e4)
             .doc(
                 "position on the undeformed surface, or no farther from it than the thickness or a hundredth of the "
-                "structure's size; the nearest point of the surface is used");
+                "structure's size; the nearest point of the surface is used; with 'body' any point that moves with it");
       },
-      "probe", "points of the surface whose displacement is written to probes.csv at each step");
+      "probe", "points of the structure whose displacement is written to probes.csv at each step");
   s.section(
       "output",
       [&](config::Section& o) {
@@ -254,6 +289,7 @@ void declare(config::Section& s, Parameters& p) {
       },
       "what is written");
   check_file_alone(s, p);
+  check_body_alone(s, p);
   check_together(s, p);
 }
 

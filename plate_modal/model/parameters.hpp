@@ -12,6 +12,7 @@
 #include "common/contact/contact.hpp"
 #include "common/diagnostics/choices.hpp"
 #include "common/time/time_scheme.hpp"
+#include "plate_modal/model/body_parameters.hpp"
 #include "plate_modal/model/plate_model.hpp"
 
 namespace couplet::plate {
@@ -71,6 +72,7 @@ struct Parameters {
   std::vector<double> gravity;  // [m/s^2]; empty if there is none
   std::optional<Load> load;
   std::optional<ContactParameters> contact;
+  std::optional<BodyParameters> body;  // instead of modes
   Vec3 initial_velocity = Vec3::Zero();
   std::vector<double> initial_amplitudes;
   std::map<std::string, PlateProbe> probes;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -142,6 +143,24 @@ double PressureLoad::value(const fv::Expression& side, const Vec3& x, double t) 
     fail(fmt::format("a pressure of {:g} Pa is not valid: magnitudes up to {:g} Pa are accepted.", pressure,
                      largest_pressure));
   return pressure;
+}
+
+mesh::Mesh mesh_of_surface(MPI_Comm comm, std::size_t n_vertices, const mesh::Csr& faces) {
+  const bool has_all = parallel::comm_rank(comm) == 0;
+  mesh::Mesh mesh;
+  mesh.comm = comm;
+  mesh.dim = 3;
+  if (has_all) mesh.cell_points = faces;
+  const Index n_faces = mesh.cell_points.size(), n_points = has_all ? Index(n_vertices) : 0;
+  mesh.cells = parallel::IndexMap(comm, n_faces, {}, {});
+  mesh.points = parallel::IndexMap(comm, n_points, {}, {});
+  for (Index f = 0; f < n_faces; ++f)
+    mesh.cell_type.push_back(faces[f].size() == 3 ? mesh::CellType::triangle : mesh::CellType::quadrilateral);
+  mesh.cell_id.resize(std::size_t(n_faces));
+  mesh.point_id.resize(std::size_t(n_points));
+  std::iota(mesh.cell_id.begin(), mesh.cell_id.end(), 0);
+  std::iota(mesh.point_id.begin(), mesh.point_id.end(), 0);
+  return mesh;
 }
 
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,

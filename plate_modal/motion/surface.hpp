@@ -80,6 +80,9 @@ class PressureLoad final {
   std::array<std::vector<double>, 2> of_one_pascal_;
 };
 
+/// A surface with these faces, whole on rank 0, as a mesh for output; other ranks write none of it.
+mesh::Mesh mesh_of_surface(MPI_Comm comm, std::size_t n_vertices, const mesh::Csr& faces);
+
 /// Pressures on the cells of a plate at t, along its normal, its weight included [Pa]. `load` may be nullptr. `fluid`: forces of a
 /// partner on the faces of the surface [N], 3 each; may be empty. On rank 0. Throws Error where a pressure has no value.
 std::vector<double> cell_pressures(const PlateModel& plate, const Parameters& parameters,

@@ -51,6 +51,7 @@ YAML = {  # page: for each block (case, section that the block is put into), or 
     "docs/how-to/paraview.md": [("perpendicular-flap", "")],
     "docs/how-to/plate-for-solid.md": [("thin-plate", "participants"), ("thin-plate", "participants")],
     "docs/how-to/waveforms.md": [("windkessel-tube", "participants.fluid"), *[("pulsing-channel", "participants.fluid")] * 3],
+    "docs/how-to/rigid-bodies.md": [("hinged-leaflet", "participants"), ("spring-cylinder", "participants"), "configs/hinged-leaflet/tumbling.yaml is this case"],
     "docs/theory/mesh-motion.md": [("perpendicular-flap", "participants.mover")],
     "docs/theory/solid-gradients.md": [("cantilever", "participants.solid")],
     "docs/theory/solid-motion.md": [("cantilever", "participants.solid")],

@@ -74,19 +74,16 @@ def response(job, reduced):
         out = job.scratch / f"lock-in-{reduced}"
         out.mkdir(exist_ok=True)
         stiffness = 2 * (2 * math.pi / reduced) ** 2
-        environment = {
-            **job.environment,
-            "COUPLET_BIN": str(job.build / "bin"),
-            "COUPLET_BODY": f"2 0 {stiffness!r} 0.2",
-        }
+        sets = (f"simulation.output.folder={out}", f"participants.body.body.springs.translation=[0, {stiffness!r}, 0]")
         cost = launch(
-            [job.root / "configs/spring-cylinder/run", "vortices.yaml", "--set", f"simulation.output.folder={out}"],
+            [job.root / "configs/spring-cylinder/run", "vortices.yaml", *(w for s in sets for w in ("--set", s))],
             out / "run.log",
             folder=out,
             timeout=3600,
-            env=environment,
+            env={**job.environment, "COUPLET_BIN": str(job.build / "bin")},
         )
-        t, y = np.loadtxt(out / "body.csv", delimiter=",").T[:2]
+        t, y = np.loadtxt(out / "body/body.csv", delimiter=",", skiprows=1).T[[0, 2]]
+        y += 0.2  # from the relaxed spring
         end, series = t > t[-1] - 30, job.beside("configs/cylinder/coefficients.py")
         return series.mean_and_amplitude(t[end], y[end])[1], reduced * series.frequency(t[end], y[end]), cost
 

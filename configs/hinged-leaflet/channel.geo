@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A leaflet of 0.7 m with round ends, 0.06 m thick, across a channel 1 m high and 5 m long. Triangles.
+DefineConstant[ n = 40 ];  // cells over the height of the channel near the leaflet
+fine = 1 / n; far = 4 / n; r = 0.03; top = 0.88; low = 0.24;
+Point(1) = {-1.5, 0, 0, far};
+Point(2) = {0.6, 0, 0, 2 * fine};
+Point(3) = {3.5, 0, 0, far};
+Point(4) = {3.5, 1, 0, far};
+Point(5) = {0, 1, 0, fine};
+Point(6) = {-1.5, 1, 0, far};
+Point(7) = {-0.3, 0, 0, 2 * fine};
+Line(1) = {1, 7};
+Line(2) = {7, 2};
+Line(3) = {2, 3};
+Line(4) = {3, 4};
+Line(5) = {4, 5};
+Line(6) = {5, 6};
+Line(7) = {6, 1};
+Point(10) = {0, top, 0, fine};
+Point(11) = {0, low, 0, fine};
+Point(12) = {-r, low, 0, fine};
+Point(13) = {r, low, 0, fine};
+Point(14) = {r, top, 0, fine};
+Point(15) = {-r, top, 0, fine};
+Point(16) = {0, low - r, 0, fine};
+Point(17) = {0, top + r, 0, fine};
+Circle(10) = {12, 11, 16};
+Circle(11) = {16, 11, 13};
+Line(12) = {13, 14};
+Circle(13) = {14, 10, 17};
+Circle(14) = {17, 10, 15};
+Line(15) = {15, 12};
+Curve Loop(1) = {1 : 7};
+Curve Loop(2) = {10 : 15};
+Plane Surface(1) = {1, 2};
+Physical Curve("inlet") = {7};
+Physical Curve("outlet") = {4};
+Physical Curve("walls") = {1, 2, 3, 5, 6};
+Physical Curve("leaflet") = {10 : 15};
+Physical Surface("fluid") = {1};
