@@ -45,11 +45,9 @@ constexpr MissingPhysics table[] = {
      "buoyancy boussinesq expansion conjugate-heat-transfer cht energy-equation natural-convection",
      "no temperature in the fluid, so no buoyancy and no conjugate heat transfer within Couplet's own fluid",
      "couple an external program that solves the heat, as in warm-flap"},
-    {fluid,
-     "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
-     "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "
-     "sutherland oldroyd viscoelastic mixture",
-     "constant density and viscosity: no mixtures, no non-Newtonian fluids", "another fluid solver"},
+    {fluid, "casson quemada sutherland oldroyd oldroyd-b viscoelastic thixotropic mixture",
+     "constant density, and a viscosity that is constant or a function of the shear rate: no mixtures, no viscoelastic fluids",
+     "another fluid solver"},
     {fluid,
      "species scalar passive-scalar concentration mass-fraction diffusivity particle particles dpm sediment combustion "
      "reaction reactions chemistry radiation magnetic mhd electric",

@@ -42,6 +42,7 @@ constexpr std::array ids{
     FindingId{answer, "given-step", "a prescribed time step far beyond what is stable on this mesh"},
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
     FindingId{answer, "eddy-viscosity-in-two-dimensions", "a turbulence model in two dimensions or on a mesh one cell deep, where it only adds viscosity"},
+    FindingId{answer, "viscosity-law", "a viscosity law whose viscosity hardly varies, so that a number would do"},
     FindingId{answer, "ringing-pressure", "waves that the steps do not resolve oscillate undamped in the trapezoidal rule"},
     FindingId{answer, "small-changes-of-density", "a weakly compressible fluid changes its density too much"},
     FindingId{neglected, "turbulence-model", "the mesh does not resolve layers of this Reynolds number", {"fluid_solver", "turbulence", "max Reynolds number of the shear within a cell, 50, or 250 with resolved walls (y+ up to 1); a flow below 3450 by the hydraulic diameter is laminar"}},
