@@ -68,6 +68,11 @@ std::optional<State<D>> Fluid<D>::moved_by_boundaries() const {
   speed = parallel::max(mesh_.comm, speed), inside = parallel::max(mesh_.comm, inside);
   if (!(speed > 2 * inside) || speed > most_speed) return {};  // the step itself refuses what is faster
   for (std::size_t f = 0; f < moved.phi.size(); ++f) moved.phi[f] = speed * moved.placement->area[f].norm();
+  for (std::size_t f = 0; f < moved.excess.size(); ++f) {  // of a fluid that thickens: sheared within a cell
+    const double shear = speed * moved.placement->conductance[f] / moved.placement->area[f].norm();
+    const double excess = parameters_.viscosity_at(shear) / parameters_.density - properties().nu;
+    moved.excess[f] = std::max(moved.excess[f], excess);
+  }
   return moved;
 }
 
