@@ -39,6 +39,11 @@ std::vector<Item> describe(const Section::Declare& declare, Describe extent) {
     }
     for (const auto& [name, keys] : d.cases)
       if (all || name == word->current) item.cases.emplace_back(name, describe(keys, extent));
+    // Of a number or a mapping, the one that is there.
+    if (!all && !items.empty() && items.back().facts.name == item.facts.name) {
+      if (item.is_present) items.back() = std::move(item);
+      return;
+    }
     items.push_back(std::move(item));
   };
   Section section(describer);

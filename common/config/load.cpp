@@ -41,10 +41,14 @@ class Loader final {
     std::size_t messages_before = 0;
     std::optional<int> dimension;  ///< value of the key `dimension`
     bool wrong_key = false;        ///< a key of this mapping could not be read
+    /// Message about a mapping in place of a number, unless an optional section of that name is declared next.
+    std::optional<Message> mapping{};
   };
   /// Processes one declaration, as visitor of the sections.
   void on(const Declaration& declaration);
   void key(const KeyFacts& facts, const Slot& slot);
+  /// Reports the mapping of a number that may not be one.
+  void report_mapping();
   /// Reads the contents of a section, optional, map or list.
   void below(const Declaration& declaration);
   void variant(const Declaration& declaration);
@@ -161,6 +165,7 @@ void Loader::read_mapping(const YAML::Node& node, const Origin& place, const std
       {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), {}, false});
   Section section(visitor_);
   declare(section);
+  report_mapping();
   report_unknown_keys();
   frames_.pop_back();
 }
@@ -260,7 +265,10 @@ void Loader::key(const KeyFacts& facts, const Slot& slot) {
     if (const std::string doubt = check_magnitude(facts, slot); !doubt.empty())
       doubts_.push_back(message(entry.place, path, doubt));
   } catch (const Error& error) {
-    report_key(entry.place, path, wrong_value(entry.node, error.what()));
+    if (std::holds_alternative<double*>(slot) && entry.node.IsMap())
+      frame.mapping = message(entry.place, path, wrong_value(entry.node, error.what()));
+    else
+      report_key(entry.place, path, wrong_value(entry.node, error.what()));
   }
 }
 
@@ -269,6 +277,10 @@ void Loader::below(const Declaration& d) {
   const Origin outside = frames_.back().place;
   const std::string path = join_path(frames_.back().path, d.facts.name);
   const MapEntry entry = take(d.facts.name);
+  if (std::ranges::count(frames_.back().known, d.facts.name) > 1) {
+    frames_.back().mapping.reset();
+    if (!entry.node.IsMap()) return;  // a number, which has been read
+  }
   const auto read = [&](const YAML::Node& node, const Origin& place, const std::string& at,
                         const std::string& name, std::size_t i) {
     read_mapping(node, place, at, [&](Section& s) { d.declare(s, name, i); });
@@ -357,7 +369,17 @@ void Loader::apply_rule(const Declaration& d) {
       .push_back(message(entry.place, key.empty() ? frame.path : join_path(frame.path, key), text));
 }
 
+void Loader::report_mapping() {
+  Frame& frame = frames_.back();
+  if (!frame.mapping) return;
+  frame.wrong_key = true;
+  messages_.push_back(std::move(*frame.mapping));
+  frame.mapping.reset();
+}
+
 void Loader::on(const Declaration& d) {
+  const bool optional = d.kind == Declaration::Kind::optional;
+  if (!optional || !std::ranges::count(frames_.back().known, d.facts.name)) report_mapping();
   switch (d.kind) {
     case Declaration::Kind::key:
       return key(d.facts, d.slot);

@@ -49,11 +49,9 @@ constexpr MissingPhysics table[] = {
      "expansion energy-equation natural-convection viscous-heating dissipation heat-source",
      "heat in the fluid has constant properties, no sources and no heating by friction, and its buoyancy is that of Boussinesq",
      "set the section heat and the temperature, heat-flux or film of the patches"},
-    {fluid,
-     "carreau carreau-yasuda cross power-law powerlaw herschel-bulkley bingham casson quemada non-newtonian nonnewtonian "
-     "generalized-newtonian rheology yield-stress shear-thinning shear-thickening consistency "
-     "sutherland oldroyd viscoelastic mixture",
-     "constant density and viscosity: no mixtures, no non-Newtonian fluids", "another fluid solver"},
+    {fluid, "casson quemada sutherland oldroyd oldroyd-b viscoelastic thixotropic mixture",
+     "constant density, and a viscosity that is constant or a function of the shear rate: no mixtures, no viscoelastic fluids",
+     "another fluid solver"},
     {fluid,
      "species scalar passive-scalar concentration mass-fraction diffusivity particle particles dpm sediment combustion "
      "reaction reactions chemistry radiation magnetic mhd electric",

@@ -103,6 +103,8 @@ std::string value_schema(const Item& item) {
 
 std::string mapping_schema(const std::vector<Item>& items);
 
+std::string documented(const Item& item);
+
 std::string item_schema(const Item& item) {
   switch (item.kind) {
     case Declaration::Kind::key:
@@ -154,12 +156,16 @@ struct Alternative {
 };
 std::vector<Alternative> alternatives(const std::vector<Item>& items) {
   std::vector<Alternative> all(1);
-  for (const Item& item : items) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Item& item = items[i];
     if (item.kind != Declaration::Kind::variant) {
       const bool needed =
           item.facts.required || (item.kind == Declaration::Kind::section && has_required(item.items));
+      std::string schema = documented(item);
+      if (i + 1 < items.size() && items[i + 1].facts.name == item.facts.name)  // a number or a mapping
+        schema = object({member("anyOf", array({schema, documented(items[++i])}))});
       for (Alternative& a : all) {
-        a.properties.push_back(member(item.facts.name, documented(item)));
+        a.properties.push_back(member(item.facts.name, schema));
         if (needed) a.required.push_back(item.facts.name);
       }
       continue;

@@ -22,7 +22,7 @@ constexpr double rounding = 1e-9;
 template <int D>
 std::optional<Sound> sound_in(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
-  return sound_of(p.compressibility, p.density, p.viscosity);
+  return sound_of(p.compressibility, p.density, p.properties().mu);
 }
 
 /// Pressure waves: the current change of density, and wall motion and pressure response over the run.

@@ -82,7 +82,8 @@ double rate_of(const mesh::Mesh& mesh, const Fluid<D>& fluid, GlobalIndex cell, 
                                                                         : -1;
     if (c < 0 || c >= mesh.cells.n_owned()) continue;
     const double flux = std::abs(s.phi[f] - (s.mesh_flux.empty() ? 0.0 : s.mesh_flux[f]));
-    rate += (friction ? nu * s.placement->conductance[f] / (2 * D) : flux / 2) / s.placement->volume[c];
+    const double local = nu + (s.excess.empty() ? 0 : s.excess[f]);
+    rate += (friction ? local * s.placement->conductance[f] / (2 * D) : flux / 2) / s.placement->volume[c];
   }
   return parallel::sum(mesh.comm, rate);
 }

@@ -46,10 +46,15 @@ double hydraulic_diameter(const Fluid<D>& fluid) {
   return sums[1] > 0 ? 4 * sums[0] / sums[1] : std::numeric_limits<double>::quiet_NaN();
 }
 
+struct Shear {
+  double reynolds;   // largest of a cell
+  double viscosity;  // smallest of a cell [m^2/s]
+};
+
 /// Largest Reynolds number of the shear within a cell, S h^2/nu. S is the smaller of the rates of strain and of rotation, because a
 /// stagnating flow does not rotate and a turning one is not strained. h is the size of the cell along which the velocity varies. Collective.
 template <int D>
-double largest_shear(const FluidView<D>& view) {
+Shear largest_shear(const FluidView<D>& view) {
   const mesh::Mesh& mesh = view.mesh;
   const State<D>& s = view.fluid.state();
   const Placement<D>& at = *s.placement;
@@ -61,16 +66,21 @@ double largest_shear(const FluidView<D>& view) {
     across[mesh.owner[f]] += at.area[f].cwiseAbs();
     if (f < mesh.n_interior) across[mesh.neighbour[f]] += at.area[f].cwiseAbs();
   }
-  double largest = 0;
+  const auto [rho, mu, nu, sound] = view.properties();
+  const auto& law = view.parameters().viscosity_law;
+  const std::vector<double> viscosity = law ? viscosity_in_cells<D>(*law, gradient) : std::vector<double>();
+  double largest = 0, smallest = law ? std::numeric_limits<double>::infinity() : nu;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const double local = law ? viscosity[c] / rho : nu;
+    smallest = std::min(smallest, local);
     const Tensor<D>& g = gradient[c];  // du_i/dx_j
     const double strain = (g + g.transpose()).norm(), rotation = (g - g.transpose()).norm(), size = g.norm();
     if (!(size > 0)) continue;
     const Vec<D> extent = 2 * at.volume[c] * across[c].cwiseInverse();
     const double change = (g * extent.asDiagonal()).norm() / size;
-    largest = std::max(largest, std::min(strain, rotation) / std::sqrt(2.) * change * change);
+    largest = std::max(largest, std::min(strain, rotation) / std::sqrt(2.) * change * change / local);
   }
-  return parallel::max(mesh.comm, largest) / view.properties().nu;
+  return {parallel::max(mesh.comm, largest), parallel::min(mesh.comm, smallest)};
 }
 
 /// True if the flow has no third dimension in which vortices stretch: most cells reach from one boundary to the
@@ -156,6 +166,18 @@ diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity) {
   return e;
 }
 
+diagnostics::EffectFinding varying_viscosity(double variation, double mean) {
+  return {.effect = "viscosity law",
+          .number = variation,
+          .limit = 0.01,
+          .what = fmt::format(
+              "standard deviation of the viscosity, by dissipated power = {:.2g} of its mean {:.4g} Pa s",
+              variation, mean),
+          .left_out = false,
+          .is_spare = true,
+          .saves = 0.3};
+}
+
 diagnostics::EffectFinding unresolved_walls(double yplus) {
   return {.effect = "resolved walls",
           .number = yplus,
@@ -171,16 +193,36 @@ std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view) {
   const FluidParameters& p = view.parameters();
   const int dimension = is_plane(view) ? 2 : 3;
   if (p.turbulence && dimension == 3) return diagnostics::finding_of(eddies(3, eddy_viscosity(view)));
-  if (!(p.viscosity > 0)) return {};
-  const double nu = p.properties().nu;
+  if (!p.viscosity_law && !(p.viscosity > 0)) return {};
+  const auto [shear, nu] = largest_shear(view);
   double width = hydraulic_diameter(view.fluid);
   // At the walls of a flow that starts from rest, layers are as thick as friction has reached: below U^2 t/nu = 9e4 (a displacement
   // thickness of 520 nu/U), no disturbance of them grows [Schlichting]. Two of them fill this width.
   if (p.initial_velocity.empty())
     width = std::min(width, 11.5 * std::sqrt(nu * (view.step.time + view.step.dt)));
   const double reynolds = largest_speed(view) * width / nu;
-  return diagnostics::finding_of(
-      unresolved_layers(dimension, largest_shear(view), largest_yplus(view), reynolds));
+  return diagnostics::finding_of(unresolved_layers(dimension, shear, largest_yplus(view), reynolds));
+}
+
+// A viscosity that hardly varies where the flow dissipates energy could be a number.
+template <int D>
+std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<D>& view) {
+  const auto& law = view.parameters().viscosity_law;
+  if (!law) return {};
+  const State<D>& s = view.fluid.state();
+  std::vector<Tensor<D>> gradient;
+  velocity_gradient<D>(view.mesh, *s.placement, s.u, s.u_boundary, gradient);
+  const std::vector<double> viscosity = viscosity_in_cells<D>(*law, gradient);
+  std::array<double, 3> sums{};  // power, and its sums of the viscosity and its square
+  for (Index c = 0; c < view.mesh.cells.n_owned(); ++c) {
+    const double mu = viscosity[c],
+                 power = mu * s.placement->volume[c] * (gradient[c] + gradient[c].transpose()).squaredNorm();
+    sums[0] += power, sums[1] += power * mu, sums[2] += power * mu * mu;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, view.mesh.comm);
+  if (!(sums[0] > 0)) return {};
+  const double mean = sums[1] / sums[0], square = sums[2] / sums[0] - mean * mean;
+  return diagnostics::finding_of(varying_viscosity(std::sqrt(std::max(0., square)) / mean, mean));
 }
 
 template <int D>
@@ -199,6 +241,8 @@ template std::optional<diagnostics::Finding> turbulence_model(const FluidView<2>
 template std::optional<diagnostics::Finding> turbulence_model(const FluidView<3>&);
 template std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<2>&);
 template std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<3>&);
+template std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<2>&);
+template std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<3>&);
 template std::optional<diagnostics::Finding> resolved_walls(const FluidView<2>&);
 template std::optional<diagnostics::Finding> resolved_walls(const FluidView<3>&);
 

@@ -20,6 +20,9 @@ namespace couplet::fluid {
 diagnostics::EffectFinding unresolved_layers(int dimension, double shear, double yplus, double reynolds);
 /// Eddy viscosity of a turbulence model relative to the molecular one.
 diagnostics::EffectFinding eddies(int dimension, double eddy_viscosity);
+/// Viscosity law. `variation`: standard deviation of the viscosity over its mean, `mean` [Pa s], both weighted by the power that
+/// it takes.
+diagnostics::EffectFinding varying_viscosity(double variation, double mean);
 /// Resolution of walls under a turbulence model.
 diagnostics::EffectFinding unresolved_walls(double yplus);
 
@@ -118,6 +121,8 @@ template <int D>
 std::optional<diagnostics::Finding> turbulence_model(const FluidView<D>& view);
 template <int D>
 std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view);
+template <int D>
+std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<D>& view);
 template <int D>
 std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view);
 template <int D>

@@ -270,11 +270,14 @@ template <int D>
 void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, const Vectors<D>& w, double a,
                                 Vectors<D>& side, Vectors<D>& u) {
   added_.clear();
+  boundary_flux_.clear();
   for (const auto& term : rate_operator_.terms()) {
     added_rate_.assign(side.size(), Vec<D>::Zero());
     term->add_implicit(from, step_, a, added_rate_, added_);
     scene_.obstacles->clear(added_rate_);
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) side[c] += step_.dt * added_rate_[c];
+    const auto flux = term->boundary_flux();
+    if (!flux.empty()) boundary_flux_.assign(flux.begin(), flux.end());
   }
   set_carried(from, a);
   solver_.prepare(step_.to, a * scene_.fluid.nu * step_.dt, added_, carried_);
@@ -285,6 +288,40 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
     solve_in_passes(w, a, side, u);
   else
     iterations_ += solver_.solve(w, tolerance(), side, u);
+  if (!boundary_flux_.empty()) set_boundary_flux(from, w, u);
+}
+
+/// Velocity of a cell extrapolated to t^{n+1}.
+template <int D>
+Vec<D> ImplicitFriction<D>::cell_ahead(const State<D>& from, Index c) const {
+  const double ratio = step_.ratio();
+  return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
+}
+
+/// The same of the velocity in the cell of a boundary face less that at the face.
+template <int D>
+Vec<D> ImplicitFriction<D>::jump_ahead(const State<D>& from, Index b) const {
+  const double ratio = step_.ratio();
+  const Vec<D> now = from.u_boundary[b];
+  return cell_ahead(from, mesh_.owner[mesh_.n_interior + b]) -
+         (ratio > 0 ? Vec<D>((1 + ratio) * now - ratio * from.u_boundary_old[b]) : now);
+}
+
+/// Subtracts the part of the boundary fluxes that damp() adds to those of the terms.
+template <int D>
+void ImplicitFriction<D>::set_boundary_flux(const State<D>& from, const Vectors<D>& w, const Vectors<D>& u) {
+  const BoundaryRows& rows = scene_.boundary.rows();
+  for (std::size_t b = 0; b < boundary_flux_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
+    const double part = added_[f] * step_.to->conductance[f] / step_.dt;
+    if (rows.friction[b] > 0) boundary_flux_[b] -= part * (u[p] - w[b] - jump_ahead(from, Index(b)));
+  }
+  for (const Index b : rows.of_mirror) {
+    const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
+    const double part = added_[f] * step_.to->conductance[f] / step_.dt;
+    const Vec<D> normal = step_.to->area[f].normalized();
+    boundary_flux_[b] -= part * (u[p] - cell_ahead(from, p)).dot(normal) * normal;
+  }
 }
 
 /// Adds theta dt nu_t g times the second time difference of u, whose part at n+1 is in the matrix. With a of
@@ -293,10 +330,7 @@ void ImplicitFriction<D>::solve(const State<D>& from, const Rates<D>& rates, con
 template <int D>
 void ImplicitFriction<D>::damp(const State<D>& from, const Vectors<D>& w, Vectors<D>& side) const {
   if (added_.empty()) return;
-  const double ratio = step_.ratio();
-  const auto ahead = [&](Index c) {
-    return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
-  };
+  const auto ahead = [&](Index c) { return cell_ahead(from, c); };
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const Vec<D> part = added_[f] * step_.to->conductance[f] * (ahead(n) - ahead(p));
@@ -307,6 +341,11 @@ void ImplicitFriction<D>::damp(const State<D>& from, const Vectors<D>& w, Vector
     const Index f = mesh_.n_interior + b, p = mesh_.owner[f];
     const Vec<D> normal = step_.to->area[f].normalized();
     side[p] -= added_[f] * step_.to->conductance[f] * (w[b] - ahead(p)).dot(normal) * normal;
+  }
+  for (std::size_t b = 0; b < boundary_flux_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (scene_.boundary.rows().friction[b] > 0)
+      side[mesh_.owner[f]] += added_[f] * step_.to->conductance[f] * jump_ahead(from, Index(b));
   }
 }
 

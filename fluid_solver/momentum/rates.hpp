@@ -66,6 +66,23 @@ Vec<D> mirrored_eddy_stress(const Placement<D>& at, double eddy, const Vec<D>& i
   return 2 * eddy * at.conductance[f] * (outside - inside).dot(normal) * normal;
 }
 
+/// Velocity gradient at an interior face: the mean of the cells' gradients, with the difference of the two cells as
+/// derivative along the normal.
+template <int D>
+Tensor<D> face_gradient(const Placement<D>& at, const Vectors<D>& u, const std::vector<Tensor<D>>& gradient,
+                        Index f, Index p, Index n) {
+  const double w = at.weight[f];
+  const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
+  const Vec<D>& area = at.area[f];
+  const Vec<D> straight = area - at.oblique_of(f);  // g d
+  const Vec<D> miss = at.conductance[f] * (u[n] - u[p]) - mean * straight;
+  return mean + miss * area.transpose() / area.squaredNorm();
+}
+
+/// Viscosity of a law in all local cells [Pa s]. The ghosts of `gradient` must be current.
+template <int D>
+std::vector<double> viscosity_in_cells(const ViscosityLaw& law, const std::vector<Tensor<D>>& gradient);
+
 /// Optional part of the momentum equation. Every function itself loops over faces or cells, and is collective.
 template <int D>
 class MomentumTerm {
@@ -83,13 +100,26 @@ class MomentumTerm {
   /// viscosity times a dt that acts at t^{n+1} to `added`, per flux face [m^2].
   virtual void add_implicit(const State<D>&, const FluidStep<D>&, double /*a*/, Vectors<D>& /*rate*/,
                             std::vector<double>& /*added*/) {}
+  /// Momentum per density that entered the fluid through the boundary faces in the last add_rate() without `split` or
+  /// add_implicit() [m^4/s^2]; empty if the term does not act there.
+  virtual std::span<const Vec<D>> boundary_flux() const { return {}; }
 };
 template <int D>
 using MomentumTerms = std::vector<std::unique_ptr<MomentumTerm<D>>>;
-/// Terms of a case: the dilatation of a compressible fluid, the stress of a turbulence model.
+/// Terms of a case: the dilatation of a compressible fluid, the stress of a turbulence model or a viscosity law.
 template <int D>
 MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const Boundary<D>& boundary,
                                      const FluidParameters& parameters);
+
+/// Stress of a viscosity law beyond that of its smallest viscosity.
+template <int D>
+std::unique_ptr<MomentumTerm<D>> make_law_stress(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                                 const FluidParameters& parameters);
+
+/// Power over density that this stress takes from the fluid on this rank [m^5/s^3]. Collective.
+template <int D>
+double excess_dissipation(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                          const FluidParameters& parameters, const State<D>& state);
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k] at level n on mesh n, with skew-symmetric mid-point u_f
 /// [trias2014]. `split`: the viscous part goes to Rates::viscous. `correct_oblique`: the mesh is not
@@ -203,12 +233,19 @@ class ImplicitFriction {
              Vectors<D>& u);
   int iterations() const { return iterations_; }
   const std::vector<double>& inverse_diagonal() const { return solver_.inverse_diagonal(); }
+  /// Momentum per density that the terms let into the fluid through the boundary faces in this step [m^4/s^2], and their
+  /// viscosity times a dt that acted there at t^{n+1}, per flux face [m^2]. Empty if no term acts there.
+  const Vectors<D>& boundary_flux() const { return boundary_flux_; }
+  std::span<const double> added() const { return added_; }
 
  private:
   double tolerance() const;
   void guess(const State<D>& from, const Rates<D>& rates, double a, const Vectors<D>& side,
              Vectors<D>& u) const;
   void damp(const State<D>& from, const Vectors<D>& w, Vectors<D>& side) const;
+  Vec<D> cell_ahead(const State<D>& from, Index c) const;
+  Vec<D> jump_ahead(const State<D>& from, Index b) const;
+  void set_boundary_flux(const State<D>& from, const Vectors<D>& w, const Vectors<D>& u);
   void set_carried(const State<D>& from, double a);
   void carry(const State<D>& from, Vectors<D>& side) const;
   void solve_in_passes(const Vectors<D>& w, double a, const Vectors<D>& side, Vectors<D>& u);
@@ -222,7 +259,7 @@ class ImplicitFriction {
   int iterations_ = 0;  // total so far
   Vectors<D> oblique_rate_, right_side_, before_, u_boundary_;
   std::vector<double> added_;  // by terms: viscosity times a dt per flux face [m^2]; empty if there is none
-  Vectors<D> added_rate_;
+  Vectors<D> added_rate_, boundary_flux_;
   std::vector<double>
       carried_;  // a (dt phi - dV) per flux face with implicit convection; empty if none has [m^3]
   std::unique_ptr<linalg::VectorAccelerator> accelerator_;  // for meshes that need many passes

@@ -144,6 +144,7 @@ MomentumTerms<D> make_momentum_terms(const mesh::Mesh& mesh, const Boundary<D>& 
   if (parameters.is_compressible()) terms.push_back(std::make_unique<Dilatation<D>>(mesh));
   if (parameters.turbulence)
     terms.push_back(std::make_unique<EddyStress<D>>(mesh, boundary.rows(), *parameters.turbulence));
+  if (parameters.viscosity_law) terms.push_back(make_law_stress<D>(mesh, boundary, parameters));
   return terms;
 }
 

@@ -123,6 +123,7 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
   const mesh::Mesh& mesh = fluid.mesh();
   const Placement<D>& at = *fluid.state().placement;
   const auto [rho, mu, nu, sound] = fluid.properties();
+  const std::vector<double>& excess = fluid.state().excess;
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
   for (std::size_t b = 0; b < units.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);
@@ -130,7 +131,8 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
     const Vec<D> n = at.area[f] / area, &force = fluid.viscous_force()[b];
     const double shear = (force - force.dot(n) * n).norm() / area;
     const double distance = area / at.conductance[f];
-    units[b] = {shear, nu > 0 ? distance * std::sqrt(shear / rho) / nu : 0};
+    const double local = nu + (excess.empty() ? 0 : excess[f]);
+    units[b] = {shear, local > 0 ? distance * std::sqrt(shear / rho) / local : 0};
   }
   return units;
 }
@@ -213,6 +215,8 @@ EnergyBudget energy_budget(const Fluid<D>& fluid) {
           mirrored_eddy_stress<D>(at, s.eddy[p], s.u[p], s.u_boundary[b], f).dot(s.u_boundary[b] - s.u[p]);
     }
   }
+  if (!s.excess.empty())
+    sums[1] += rho * excess_dissipation<D>(mesh, fluid.boundary(), fluid.parameters(), s);
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh.comm);
   return {sums[0], sums[1], sums[2], sums[3]};
 }
@@ -287,6 +291,10 @@ void FlowQuantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
       for (int i = first; i < first + components; ++i) values.push_back(value[i]);
     }
     add(field.name, field.unit, components, keep(std::move(values)), n);
+  }
+  if (wanted.viscosity) {
+    if (gradient.empty()) velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
+    add("viscosity", "Pa s", 1, keep(viscosity_in_cells<D>(*fluid_.parameters().viscosity_law, gradient)), n);
   }
   if (!s.eddy.empty()) add("eddy-viscosity", "m^2/s", 1, s.eddy, n);
   if (statistics)

@@ -50,9 +50,9 @@ diagnostics::EffectChoice choose_waves(const FluidParameters& p, const mesh::Mes
   const auto velocity_by = [&has](GivenBy who) {
     return has([who](const BoundaryParameters& b) { return condition_of(b).velocity == who; });
   };
-  const auto sound = sound_of({}, p.density, p.viscosity);
+  const auto sound = sound_of({}, p.density, p.properties().mu);
   if (!sound) return without("a model fluid, whose speed of sound is not known");
-  if (!p.bodies.empty() || p.rotating_frame || velocity_by(GivenBy::flow))
+  if (!p.bodies.empty() || p.rotating_frame || velocity_by(GivenBy::flow) || p.viscosity_law)
     return without("not available with 'bodies', 'rotating-frame' or a convective outlet");
   if (!p.gaps.empty() && has([](const auto& b) { return condition_of(b).passage == Passage::in; }))
     return with("inflow compresses a part that 'gaps' shut off");
@@ -114,8 +114,9 @@ diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshF
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
   if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
-  const double nu = p.properties().nu;
+  const double nu = p.viscosity_at(speed / mesh.smallest_side()) / p.density;
   if (!(nu > 0)) return without("inviscid fluid");
+  if (p.viscosity_law) return without("not available with a law of 'viscosity'");
   const double reynolds = speed * mesh.smallest_side() / nu, cell = speed * mesh.mean_cell / nu;
   if (reynolds < laminar)
     return without(fmt::format("Reynolds number {:.3g}, below {:g}", reynolds, laminar));
@@ -130,7 +131,8 @@ diagnostics::EffectChoice turbulence(const FluidParameters& p, const mesh::MeshF
 /// Explicit diffusion requires nu dt (sum of 4/h^2) <= 1, convection about half a cell per step. The implicit
 /// term costs about two explicit steps.
 diagnostics::EffectChoice viscous(const FluidParameters& p, const mesh::MeshFacts& mesh, double speed) {
-  const double nu = p.properties().nu, h = mesh.shortest_edge;
+  const double h = mesh.shortest_edge,
+               nu = std::max(p.viscosity_at(0), p.viscosity_at(speed / h)) / p.density;
   const double diffusion = nu > 0 ? h * h / (4 * mesh.dim * nu) : std::numeric_limits<double>::infinity();
   const double convection = speed > 0 ? 0.5 * h / speed : std::numeric_limits<double>::infinity();
   const bool implicit = diffusion < 0.5 * convection && !std::isinf(diffusion);

@@ -155,7 +155,15 @@ void declare_scene(config::Section& s, FluidParameters& p) {
       .not_negative()
       .required()
       .doc("dynamic viscosity");
-  s.doubt([&p] { return config::check_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
+  s.optional_section<ViscosityLaw>(
+      "viscosity", p.viscosity_law, [](config::Section& v, ViscosityLaw& law) { declare(v, law); },
+      "instead of the number: a law by which the viscosity depends on the shear rate");
+  s.doubt(
+      [&p] {
+        return config::check_kinematic_viscosity(p.viscosity_law ? p.viscosity_law->largest() : p.viscosity,
+                                                 p.density);
+      },
+      "viscosity");
   s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
                             "boundary condition of each patch of the mesh; every patch needs an entry");
 }
@@ -368,6 +376,7 @@ std::span<const GradientField> gradient_fields() { return fields; }
 void declare_output(config::Section& s, FluidOutputParameters& p) {
   for (const GradientField& field : gradient_fields())
     s.value(field.name, p.gradient_fields[field.name]).doc(field.meaning);
+  s.value("viscosity", p.viscosity).doc("field of the dynamic viscosity [Pa s], with a law of 'viscosity'");
   s.value("walls", p.walls)
       .doc(
           "write walls.csv with the shear and y+ of each wall; with a turbulence model it is always written");
@@ -403,6 +412,7 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
 
 /// Rules for what no scheme combines.
 void declare_conflicts(config::Section& s, const FluidParameters& p) {
+  const bool law = p.viscosity_law.has_value();
   const bool bodies = !p.bodies.empty(), gaps = !p.gaps.empty(), frame = p.rotating_frame.has_value(),
              waves = p.is_compressible(), implicit = p.viscous == ViscousTreatment::implicit,
              motion = p.motion.has_value(), fourth = p.face_values == FaceValues::fourth_order;
@@ -422,6 +432,14 @@ void declare_conflicts(config::Section& s, const FluidParameters& p) {
       {"viscous", bodies && implicit, "immersed bodies act on the explicit step; use 'explicit'"},
       {"face-values", fourth && (bodies || gaps || motion),
        "fourth-order is not supported together with 'bodies', 'gaps' or 'motion'; use second-order"},
+      {"viscosity", law && p.turbulence,
+       "a law is not supported together with a turbulence model; remove 'turbulence', or give a number"},
+      {"viscosity", law && bodies,
+       "a law is not supported together with immersed bodies; remove 'bodies', or give a number"},
+      {"viscosity", law && waves,
+       "a law is not supported in a compressible fluid; remove 'compressibility', set 'scheme: none', or give a number"},
+      {"output.viscosity", p.output.viscosity && !law,
+       "it needs a law of 'viscosity', which is a number here"},
       {"compressibility", waves && bodies,
        "not supported together with immersed bodies; remove 'bodies', or set 'scheme: none'"},
       {"compressibility", waves && frame,

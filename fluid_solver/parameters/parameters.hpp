@@ -16,6 +16,7 @@
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
+#include "fluid_solver/parameters/viscosity_law.hpp"
 
 namespace couplet::fluid {
 
@@ -239,6 +240,7 @@ struct FlowAreaParameters {
 struct FluidOutputParameters {
   std::map<std::string, bool> gradient_fields;  // by their names, see output/derived.hpp
   bool energy_budget = false, walls = false, fluxes = false;
+  bool viscosity = false;             // field of a viscosity law
   std::vector<std::string> surfaces;  // patches, or "all"
   std::map<std::string, CoefficientParameters> coefficients;
   std::map<std::string, FlowAreaParameters> flow_areas;
@@ -265,7 +267,7 @@ struct ProbeParameters {
 /// Properties of a fluid.
 struct Properties {
   double rho = 0;    ///< density [kg/m^3]
-  double mu = 0;     ///< dynamic viscosity [Pa s]
+  double mu = 0;     ///< dynamic viscosity [Pa s]; of a law the smallest, see State::excess for the rest
   double nu = 0;     ///< kinematic viscosity [m^2/s]
   double sound = 0;  ///< speed of sound [m/s]; 0 means incompressible
 };
@@ -276,7 +278,8 @@ struct FluidParameters {
   double mesh_scale = 1;
   int dimension = 3;
   double density = 0;    // [kg/m^3]
-  double viscosity = 0;  // dynamic [Pa s]
+  double viscosity = 0;  // dynamic [Pa s]; not used if there is a law
+  std::optional<ViscosityLaw> viscosity_law;
   std::map<std::string, BoundaryParameters> boundaries;
   std::optional<double> time_step;  // [s]; absent if it follows from the stability limit
   double safety_factor = 0.8;
@@ -303,7 +306,12 @@ struct FluidParameters {
   std::optional<HeatParameters> heat;
   bool is_compressible() const { return compressibility && compressibility->is_solved(); }
   Properties properties() const {
-    return {density, viscosity, viscosity / density, solved_sound(compressibility, density, viscosity)};
+    const double mu = viscosity_law ? viscosity_law->smallest() : viscosity;
+    return {density, mu, mu / density, solved_sound(compressibility, density, mu)};
+  }
+  /// Viscosity at a shear rate [1/s].
+  double viscosity_at(double shear_rate) const {
+    return viscosity_law ? (*viscosity_law)(shear_rate) : viscosity;
   }
 };
 

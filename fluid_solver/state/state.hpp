@@ -267,6 +267,8 @@ struct State : FlowHistory<D> {
   std::shared_ptr<const std::vector<char>> blocked;
 
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
+  /// Kinematic viscosity beyond the constant one at t^n per flux face [m^2/s]; empty without a viscosity law.
+  std::vector<double> excess;
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
   std::vector<double> phi_old;       ///< at t^{n-1}; empty if convection is explicit everywhere
@@ -318,8 +320,10 @@ struct Prediction {
   Vectors<D> beside_walls;
   Vectors<D> viscous_flux;  ///< momentum flux to the surroundings, per boundary face [N]
   double weight = 0;        ///< weight of t^{n+1} in it; 0 with an explicit predictor
-  Rates<D> rates;           ///< R^n
-  Vectors<D> shear;         ///< viscous force on the boundary faces at t^n [N]
+  /// Viscosity with which t^{n+1} acts on viscous_flux beyond weight mu, per boundary face [Pa s]; empty without a law.
+  std::vector<double> excess;
+  Rates<D> rates;    ///< R^n
+  Vectors<D> shear;  ///< viscous force on the boundary faces at t^n [N]
 };
 
 /// Result of the projection, the second stage.

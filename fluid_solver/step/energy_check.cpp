@@ -105,7 +105,7 @@ double EnergyCheck<D>::energy_at_rest(const EnergyStep<D>& s) const {
 /// sums: work, total flux, p |phi|, |phi|.
 template <int D>
 void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
-  const bool moving = !s.swept.empty();
+  const bool moving = !s.swept.empty(), has_law = !s.from.excess.empty();
   const BoundaryRows& rows = boundary_.rows();
   for (std::size_t b = 0; b < s.w.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
@@ -122,9 +122,10 @@ void EnergyCheck<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
                               rho_ * through * rows.pressure[b] *
                                   ((through < 0 ? rows.inflow[b] : 1.0) - 0.5) * inside.squaredNorm();
     // The larger value of both levels: a stiff layer changes within the step, so its mean is no bound.
-    const double friction =
+    const double friction = std::max(
         t * mu_ * s.to.conductance[f] *
-        std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());
+            std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm()),
+        has_law ? s.friction[b].norm() * std::max(before.norm(), after.norm()) : 0.0);
     sums[0] += s.dt * (pressure + convection + friction);
     sums[1] += s.dt * (std::abs(pressure) + std::abs(convection) + std::abs(friction));
   }
@@ -177,7 +178,7 @@ std::string likely_cause(const mesh::Mesh& mesh, const Boundary<D>& boundary, co
     if (mesh.owner[f] != cell && (outside || mesh.neighbour[f] != cell)) continue;
     convection += 0.5 * std::abs(s.from.phi[f] - (s.swept.empty() ? 0 : s.swept[f] / s.dt));
     const double share = outside ? boundary.rows().friction[f - mesh.n_interior] : 1;
-    diffusion += 2 * nu * s.to.conductance[f] * share;
+    diffusion += 2 * (nu + (s.from.excess.empty() ? 0 : s.from.excess[f])) * s.to.conductance[f] * share;
     tangent = std::max(tangent, s.to.oblique_of(f).norm() / s.to.area[f].norm());
   }
   convection *= s.dt / s.to.volume[cell];

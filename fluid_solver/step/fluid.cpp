@@ -69,6 +69,11 @@ std::optional<State<D>> Fluid<D>::moved_by_boundaries() const {
   speed = parallel::max(mesh_.comm, speed), inside = parallel::max(mesh_.comm, inside);
   if (!(speed > 2 * inside) || speed > most_speed) return {};  // the step itself refuses what is faster
   for (std::size_t f = 0; f < moved.phi.size(); ++f) moved.phi[f] = speed * moved.placement->area[f].norm();
+  for (std::size_t f = 0; f < moved.excess.size(); ++f) {  // of a fluid that thickens: sheared within a cell
+    const double shear = speed * moved.placement->conductance[f] / moved.placement->area[f].norm();
+    const double excess = parameters_.viscosity_at(shear) / parameters_.density - properties().nu;
+    moved.excess[f] = std::max(moved.excess[f], excess);
+  }
   return moved;
 }
 
@@ -172,13 +177,13 @@ template <int D>
 void Fluid<D>::accept() {
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
+  accepted_.turn.swap(turn_);  // of the new level, which commit() reads
+  accepted_.turns = boundary_.walls_turn();
   if (rejected_) accepted_.largest_speed = 0;
   step_.commit(accepted_);
   if (rejected_) accepted_.ledger.largest = std::max(0., accepted_.ledger.energy);
   step_.keep();
   accepted_.time = time_ + dt_;
-  accepted_.turn.swap(turn_);
-  accepted_.turns = boundary_.walls_turn();
   statistics_.pressure_iterations = step_.pressure_iterations();
   statistics_.viscous_iterations = step_.viscous_iterations();
 }
@@ -248,12 +253,15 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
 /// see docs/theory/coupling.md.
 template <int D>
 std::array<double, 2> Fluid<D>::unseen_share(const Vectors<D>& w) const {
-  const double layer = std::sqrt(properties().rho * properties().mu / dt_);  // rho sqrt(nu dt)/dt
-  double sums[4] = {};                                                       // unseen^2, load^2, load.S, S^2
+  const auto [rho, mu, nu, sound] = properties();
+  const std::vector<double>& excess = level().excess;
+  double sums[4] = {};  // unseen^2, load^2, load.S, S^2
   for (std::size_t b = 0; b < guess_.size(); ++b) {
     if (!boundary_.is_interface(static_cast<Index>(b))) continue;
     const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
     const Vec<D> load = pressure_force_[b] + viscous_force_[b];
+    const double local = mu + (excess.empty() ? 0 : rho * excess[mesh_.n_interior + static_cast<Index>(b)]);
+    const double layer = std::sqrt(rho * local / dt_);  // rho sqrt(nu dt)/dt
     sums[0] += layer * layer * area.squaredNorm() * (w[b] - guess_[b]).squaredNorm();
     sums[1] += load.squaredNorm();
     sums[2] += load.dot(area);

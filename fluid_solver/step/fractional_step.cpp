@@ -31,7 +31,9 @@ void Loads<D>::set(const Scene<D>& scene, const FluidStep<D>& step, const Predic
     Vec<D> flux = prediction.viscous_flux[b];
     if (prediction.weight != 0 && scene.boundary.is_interface(static_cast<Index>(b))) {
       const Vec<D> c = projected.w[b] - prediction.w[b];
-      flux -= prediction.weight * scene.fluid.mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
+      const double mu =
+          prediction.weight * scene.fluid.mu + (prediction.excess.empty() ? 0 : prediction.excess[b]);
+      flux -= mu * to.conductance[f] * (c + 3 * c.dot(n) * n);
     }
     double p = projected.boundary[b];
     if (!projected.rotational.empty()) p += projected.rotational[scene.mesh.owner[f]];
@@ -303,8 +305,17 @@ void FractionalStep<D>::commit(State<D>& s) {
 
 template <int D>
 EnergyStep<D> FractionalStep<D>::energy_step(const State<D>& from) const {
-  return {from,        *step_.to,         step_.dt, u_, projected_.w, projected_.phi, projected_.boundary,
-          step_.swept, prediction_.force, *level_};
+  return {from,
+          *step_.to,
+          step_.dt,
+          u_,
+          projected_.w,
+          projected_.phi,
+          projected_.boundary,
+          step_.swept,
+          prediction_.force,
+          prediction_.viscous_flux,
+          *level_};
 }
 
 template <int D>

@@ -160,6 +160,7 @@ void Predictor<D>::predict(const State<D>& from, const Vectors<D>& turned) {
       out_.viscous_flux[i] = a * out_.viscous_flux[i] + b * out_.shear[i];
       if (ratio > 0) out_.viscous_flux[i] += c * from.shear_old[i];
     }
+    add_to_surroundings(friction_.boundary_flux(), out_.viscous_flux);
   } else {
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) out_.u[c] = side_[c] / step_.to->volume[c];
     set_explicit_friction(from, e0, e1);
@@ -173,10 +174,18 @@ void Predictor<D>::set_explicit_friction(const State<D>& from, double e0, double
     out_.viscous_flux[b] = e1 != 0 ? Vec<D>(e0 * out_.shear[b] + e1 * from.shear_old[b]) : out_.shear[b];
 }
 
+/// Adds the force of terms that let this momentum per density into the fluid [m^4/s^2].
+template <int D>
+void Predictor<D>::add_to_surroundings(std::span<const Vec<D>> flux, Vectors<D>& force) const {
+  for (std::size_t b = 0; b < flux.size(); ++b) force[b] -= scene_.fluid.rho * flux[b];
+}
+
 template <int D>
 void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   rate_operator_.apply(from, implicit, scene_.oblique, out_.rates, gradient_.of(from));
   wall_flux<D>(mesh_, *from.placement, scene_.fluid.mu, from.u, from.u_boundary, out_.shear);
+  if (!implicit)
+    for (const auto& term : rate_operator_.terms()) add_to_surroundings(term->boundary_flux(), out_.shear);
   if (scene_.parameters.rotating_frame) add_wall_convection(from);
   scene_.obstacles->clear(out_.rates.rate);
   scene_.obstacles->clear(out_.rates.viscous);
@@ -288,6 +297,9 @@ void Predictor<D>::solve_viscous(const State<D>& from, double a) {
   friction_.solve(from, out_.rates, out_.w, a, side_, out_.u);
   scene_.boundary.close(mesh_, *step_.to, out_.u, out_.w, u_boundary_);
   wall_flux<D>(mesh_, *step_.to, scene_.fluid.mu, out_.u, u_boundary_, out_.viscous_flux);
+  out_.excess.resize(friction_.boundary_flux().size());
+  for (std::size_t b = 0; b < out_.excess.size(); ++b)
+    out_.excess[b] = scene_.fluid.rho / step_.dt * friction_.added()[mesh_.n_interior + b];
   add_back_old_pressure();
 }
 
@@ -333,6 +345,11 @@ void FaceFlux<D>::set_relaxation(const State<D>& from) {
   const bool moving = !from.mesh_flux.empty();
   evening_pass(mesh_, scene_.fluid.nu, at.conductance.data(), from.phi.data(),
                moving ? from.mesh_flux.data() : nullptr, relaxation_.data());
+  for (std::size_t f = 0; f < from.excess.size(); ++f) {
+    const double rate = from.excess[f] * at.conductance[f];
+    relaxation_[mesh_.owner[f]] += rate;
+    if (f < std::size_t(mesh_.n_interior)) relaxation_[mesh_.neighbour[f]] += rate;
+  }
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) relaxation_[c] /= at.volume[c];
   mesh_.cells.update_ghosts(relaxation_);
 }

@@ -51,6 +51,7 @@ class Predictor {
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, double a);
+  void add_to_surroundings(std::span<const Vec<D>> flux, Vectors<D>& force) const;
   void add_back_old_pressure();
 
   const Scene<D>& scene_;
@@ -114,6 +115,7 @@ struct EnergyStep {
   const std::vector<double>& p;      ///< at t^{n+1/2} per boundary face [Pa]
   const std::vector<double>& swept;  ///< dV_f per flux face [m^3]; empty if the mesh is at rest
   const Vectors<D>& force;        ///< body force at t^{n+1/2} per local cell [m/s^2]; empty if there is none
+  const Vectors<D>& friction;     ///< viscous force on the surroundings per boundary face [N]
   const PressureLevel<D>& level;  ///< at t^{n+1/2}
 };
 

@@ -52,6 +52,43 @@ probes:
   EXPECT_EQ(p.probes[1].name, "root");
 }
 
+/// A number whose keys follow under the same name may be a mapping instead.
+TEST(Load, a_number_may_be_a_mapping_where_a_section_of_its_name_is_declared_next) {
+  struct Values {
+    double viscosity = 0;
+    std::optional<Damping> law;
+    int other = 0;
+  };
+  const auto declaration_of = [](Values& v) {
+    return [&v](config::Section& s) {
+      s.value("viscosity", v.viscosity).required();
+      s.optional_section<Damping>(
+          "viscosity", v.law, [](config::Section& d, Damping& it) { d.value("mass", it.mass).unit("1/s"); },
+          "");
+      s.value("other", v.other).required();
+    };
+  };
+  const auto read_law = [&](const std::string& text, Values& v) {
+    return config::load(config::Document::parse(text, "case.yaml"), "", declaration_of(v));
+  };
+  Values number, law, wrong;
+  EXPECT_THAT(read_law("viscosity: 3\nother: 1\n", number), ElementsAre());
+  EXPECT_EQ(number.viscosity, 3);
+  EXPECT_FALSE(number.law.has_value());
+  EXPECT_THAT(config::effective(declaration_of(number)), "viscosity: 3\nother: 1\n");
+  EXPECT_THAT(read_law("viscosity: {mass: 2}\nother: 1\n", law), ElementsAre());
+  EXPECT_EQ(law.law.value().mass, 2);
+  EXPECT_THAT(config::effective(declaration_of(law)), "viscosity:\n  mass: 2  # 1/s\nother: 1\n");
+  EXPECT_THAT(read_law("viscosity: thick\nother: {mass: 2}\n", wrong),
+              ElementsAre(testing::HasSubstr("case.yaml:1:1: viscosity: "),
+                          testing::HasSubstr("case.yaml:2:1: other: ")));
+  EXPECT_THAT(read_law("other: 1\n", wrong), ElementsAre(testing::HasSubstr("this required key is missing")));
+  EXPECT_THAT(read_law("viscosity: {weight: 2}\nother: 1\n", wrong),
+              ElementsAre(testing::HasSubstr("case.yaml:1:13: viscosity.weight: unknown key")));
+  const std::string schema = config::json_schema("t", declaration_of(number));
+  EXPECT_EQ(schema.find("\"viscosity\": {"), schema.rfind("\"viscosity\": {"));
+}
+
 TEST(Load, absent_keys_keep_the_defaults_and_absent_effects_do_not_exist) {
   const Parameters p = read(good);
   EXPECT_EQ(p.analysis, Parameters::Analysis::dynamic);

@@ -46,9 +46,9 @@ TEST(MissingPhysics, a_key_or_value_that_asks_for_it_is_answered_with_the_limit)
               ElementsAre("case.yaml:4:5: participants.p.model: 'k-omega-sst' is not available. " + rans));
   EXPECT_THAT(errors_of("fluid_solver", "turbulence-model: kOmegaSST"),
               ElementsAre("case.yaml:4:5: participants.p.turbulence-model: unknown key. " + rans));
-  for (const char* line : {"viscosity: {model: carreau, zero: 1}", "viscosity: power-law",
-                           "rheology: {n: 0.5}", "Carreau_Yasuda: [1]"})
-    EXPECT_THAT(errors_of("fluid_solver", line), ElementsAre(HasSubstr("no non-Newtonian fluids. Instead:")))
+  for (const char* line : {"viscosity: {model: casson, zero: 1}", "viscosity: quemada", "oldroyd-b: {n: 0.5}",
+                           "Viscoelastic: [1]"})
+    EXPECT_THAT(errors_of("fluid_solver", line), ElementsAre(HasSubstr("no viscoelastic fluids. Instead:")))
         << line;
   EXPECT_THAT(errors_of("solid_solver", "material-law: {type: [elastic, plastic]}"),
               ElementsAre(HasSubstr("no plasticity")));
@@ -71,7 +71,7 @@ TEST(MissingPhysics, a_key_or_word_that_is_gone_is_answered_with_what_to_use) {
 TEST(MissingPhysics, other_keys_and_programs_are_answered_as_before) {
   EXPECT_THAT(errors_of("solid_solver", "heat-capacity-ratio: 1.4"),
               ElementsAre(HasSubstr("unknown key. Valid keys: ")));
-  EXPECT_THAT(errors_of("solid_solver", "carreau: 1"), ElementsAre(HasSubstr("unknown key. Valid keys: ")));
+  EXPECT_THAT(errors_of("solid_solver", "casson: 1"), ElementsAre(HasSubstr("unknown key. Valid keys: ")));
   EXPECT_THAT(errors_of("fluid_solver", "viscosity: thick"),
               ElementsAre(HasSubstr("'thick' is not a number")));
 }

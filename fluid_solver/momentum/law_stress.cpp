@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Generalized Newtonian fluids: the viscosity depends on the shear rate.
+#include <cmath>
+#include <numbers>
+
+#include "fluid_solver/momentum/rates.hpp"
+
+namespace couplet::fluid {
+
+namespace {
+
+// nu (grad u + grad u^T) has at most twice the rate of nu grad u.
+constexpr double stress_of_law = 2;
+
+/// Shear rate [1/s] of grad u + grad u^T.
+template <int D>
+double shear_rate(const Tensor<D>& twice_strain) {
+  return twice_strain.norm() / std::numbers::sqrt2;
+}
+
+/// Stress nu+ (grad u + grad u^T) of the excess nu+ of a law over its smallest viscosity, whose part is nu grad u in the rate
+/// operator: for a constant nu, the rest nu grad u^T adds nothing to the rate of a field free of divergence.
+template <int D>
+class LawStress final : public MomentumTerm<D> {
+ public:
+  LawStress(const mesh::Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters)
+      : mesh_(mesh),
+        rows_(boundary.rows()),
+        law_(*parameters.viscosity_law),
+        rho_(parameters.density),
+        base_(law_.smallest()),
+        is_wall_(rows_.friction.size(), 0) {
+    const std::vector<Index> patch = mesh.patch_of_boundary();
+    for (std::size_t b = 0; b < is_wall_.size(); ++b)
+      is_wall_[b] = is_wall(parameters.boundaries.at(mesh.patches[patch[b]].name));
+  }
+
+  void start(State<D>& s) override {
+    const Flow flow = flow_of(s);
+    s.excess.resize(mesh_.n_flux_faces());
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) s.excess[f] = excess(pull(flow, f).shear);
+  }
+
+  void add_rate(const State<D>& s, bool split, const typename MomentumTerm<D>::Gradient& gradient,
+                Vectors<D>& rate) override {
+    flux_.assign(rows_.friction.size(), Vec<D>::Zero());
+    if (split) return;
+    const Flow flow{*s.placement, s.u, s.u_boundary, s.turn, gradient()};
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) add(f, s.excess[f] * pull(flow, f).traction, rate);
+  }
+
+  void add_limits(const State<D>& s, Vectors<2>& rates) const override {
+    const double factor = 2 * stress_of_law * law_.stiffening();
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+      const double rate = factor * s.excess[f] * s.placement->conductance[f];
+      if (f >= mesh_.n_interior && is_free(f)) continue;
+      rates[mesh_.owner[f]][1] += rate;
+      if (f < mesh_.n_interior) rates[mesh_.neighbour[f]][1] += rate;
+    }
+  }
+
+  /// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own viscosity, as that of eddies. On a moving mesh it is the mean of
+  /// those on the meshes of both levels, which is second order in time.
+  void add_implicit(const State<D>& from, const FluidStep<D>& step, double a, Vectors<D>& rate,
+                    std::vector<double>& added) override {
+    const double ratio = step.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
+    Vectors<D> u = from.u, u_boundary = from.u_boundary;
+    if (ratio > 0) {
+      for (std::size_t c = 0; c < u.size(); ++c) u[c] = e0 * from.u[c] + e1 * from.u_old[c];
+      for (std::size_t b = 0; b < u_boundary.size(); ++b)
+        u_boundary[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
+    }
+    added.resize(mesh_.n_flux_faces(), 0);
+    flux_.assign(rows_.friction.size(), Vec<D>::Zero());
+    add_stress(*from.placement, from, u, u_boundary, step.moving() ? 0.5 : 1, a * step.dt, rate, added);
+    if (step.moving()) add_stress(*step.to, from, u, u_boundary, 0.5, a * step.dt, rate, added);
+  }
+
+  std::span<const Vec<D>> boundary_flux() const override { return flux_; }
+
+  /// Power that the stress takes from the fluid over the density, on this rank [m^5/s^3].
+  double dissipation(const State<D>& s) {
+    const Flow flow = flow_of(s);
+    double sum = 0;
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+      const Index p = mesh_.owner[f];
+      const bool inside = f < mesh_.n_interior;
+      const int owned = (p < mesh_.cells.n_owned()) + (inside && mesh_.neighbour[f] < mesh_.cells.n_owned());
+      const Vec<D> change = (inside ? s.u[mesh_.neighbour[f]] : s.u_boundary[f - mesh_.n_interior]) - s.u[p];
+      sum += (inside ? 0.5 * owned : 1) * s.excess[f] * pull(flow, f).traction.dot(change);
+    }
+    return sum;
+  }
+
+ private:
+  struct Flow {
+    const Placement<D>& at;
+    const Vectors<D>&u, &u_boundary, &turn;
+    const std::vector<Tensor<D>>& gradient;
+  };
+  struct Pull {
+    double shear;     // [1/s]
+    Vec<D> traction;  // (grad u + grad u^T).S [m^2/s]
+  };
+
+  /// Viscosity beyond the constant one [m^2/s].
+  double excess(double shear) const { return (law_(shear) - base_) / rho_; }
+  /// True at boundary faces whose velocity follows the fluid without friction.
+  bool is_free(Index f) const { return rows_.pressure[f - mesh_.n_interior] > 0; }
+
+  Flow flow_of(const State<D>& s) {
+    velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient_);
+    return {*s.placement, s.u, s.u_boundary, s.turn, gradient_};
+  }
+
+  Pull pull(const Flow& flow, Index f) const {
+    if (f >= mesh_.n_interior) return pull_at_boundary(flow, f);
+    const Tensor<D> g =
+        face_gradient<D>(flow.at, flow.u, flow.gradient, f, mesh_.owner[f], mesh_.neighbour[f]);
+    const Tensor<D> twice_strain = g + g.transpose();
+    return {shear_rate<D>(twice_strain), twice_strain * flow.at.area[f]};
+  }
+
+  /// At a wall, where div u = 0, only its rotation adds to the one-sided normal derivative. Elsewhere the other derivatives are those
+  /// of the cell.
+  Pull pull_at_boundary(const Flow& flow, Index f) const {
+    const Index b = f - mesh_.n_interior, p = mesh_.owner[f];
+    const Vec<D>& area = flow.at.area[f];
+    const double square = area.squaredNorm();
+    const Vec<D> change = flow.at.conductance[f] * (flow.u_boundary[b] - flow.u[p]);
+    if (is_wall_[b]) {
+      const Vec<D> whole = flow.turn.empty() ? change : Vec<D>(change + flow.turn[b]);
+      return {(whole - whole.dot(area) / square * area).norm() / std::sqrt(square), whole};
+    }
+    const Vec<D> straight = area - flow.at.oblique_of(f);
+    const Tensor<D> g = flow.gradient[p] + (change - flow.gradient[p] * straight) * area.transpose() / square;
+    const Tensor<D> twice_strain = g + g.transpose();
+    const double shear = shear_rate<D>(twice_strain);
+    if (is_free(f)) return {shear, g.transpose() * area};
+    if (rows_.friction[b] > 0) return {shear, twice_strain * area};
+    return {shear, 2 * change.dot(area) / square * area};  // mirrored
+  }
+
+  void add(Index f, const Vec<D>& flux, Vectors<D>& rate) {
+    rate[mesh_.owner[f]] += flux;
+    if (f < mesh_.n_interior)
+      rate[mesh_.neighbour[f]] -= flux;
+    else
+      flux_[f - mesh_.n_interior] += flux;
+  }
+
+  void add_stress(const Placement<D>& at, const State<D>& from, const Vectors<D>& u,
+                  const Vectors<D>& u_boundary, double share, double implicit, Vectors<D>& rate,
+                  std::vector<double>& added) {
+    velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
+    const Flow flow{at, u, u_boundary, from.turn, gradient_};
+    const double factor = share * implicit * stress_of_law * law_.stiffening();
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+      const Pull here = pull(flow, f);
+      const double nu = excess(here.shear);
+      add(f, share * nu * here.traction, rate);
+      if (f < mesh_.n_interior || !is_free(f)) added[f] += factor * nu;
+    }
+  }
+
+  const mesh::Mesh& mesh_;
+  const BoundaryRows& rows_;
+  ViscosityLaw law_;
+  double rho_, base_;  // [kg/m^3], [Pa s]
+  std::vector<char> is_wall_;
+  std::vector<Tensor<D>> gradient_;
+  Vectors<D> flux_;
+};
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<MomentumTerm<D>> make_law_stress(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                                                 const FluidParameters& parameters) {
+  return std::make_unique<LawStress<D>>(mesh, boundary, parameters);
+}
+
+template <int D>
+double excess_dissipation(const mesh::Mesh& mesh, const Boundary<D>& boundary,
+                          const FluidParameters& parameters, const State<D>& state) {
+  return LawStress<D>(mesh, boundary, parameters).dissipation(state);
+}
+
+template <int D>
+std::vector<double> viscosity_in_cells(const ViscosityLaw& law, const std::vector<Tensor<D>>& gradient) {
+  std::vector<double> viscosity;
+  for (const Tensor<D>& g : gradient) viscosity.push_back(law(shear_rate<D>(g + g.transpose())));
+  return viscosity;
+}
+
+template decltype(make_law_stress<2>) make_law_stress<2>;
+template decltype(make_law_stress<3>) make_law_stress<3>;
+template decltype(excess_dissipation<2>) excess_dissipation<2>;
+template decltype(excess_dissipation<3>) excess_dissipation<3>;
+template decltype(viscosity_in_cells<2>) viscosity_in_cells<2>;
+template decltype(viscosity_in_cells<3>) viscosity_in_cells<3>;
+
+}  // namespace couplet::fluid
