@@ -10,6 +10,7 @@ install(FILES ${PROJECT_BINARY_DIR}/VERSION DESTINATION ${share}/python/couplet)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${share}) # pages of the site
 install(DIRECTORY configs docs DESTINATION ${share} PATTERN "out" EXCLUDE PATTERN "out-*" EXCLUDE PATTERN "*.cache.msh" EXCLUDE
         PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY client/examples DESTINATION ${share}/client) # cases and pages refer to them
 install(FILES common/mesh/gmsh/deck.py common/mesh/gmsh/deck_mesh.py DESTINATION ${share}/common/mesh/gmsh) # for couplet import
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Man pages, completion, the reference of keys and the schemas come from what the command and the programs declare.

@@ -30,6 +30,8 @@ def works(prefix, home):
     told = {said.stdout.strip(), run(prefix, home, "fluid_solver", "--version").stdout.strip(), f"couplet {cited}"}
     newest = re.search(r"^## (\d+\.\d+\.\d+)", (prefix / "share/couplet/CHANGELOG.md").read_text(), flags=re.M)[1]
     check("one version: command, programs, citation, release notes", told == {f"couplet {newest}"}, (told, newest))
+    dangling = [str(f.relative_to(prefix)) for f in (prefix / "share").rglob("*") if f.is_symlink() and not f.exists()]
+    check("each link leads to an installed file", not dangling, dangling)
     doctor = run(prefix, home, "couplet", "doctor")
     check("the doctor's self-test", doctor.returncode == 0 and "ok  self-test" in doctor.stdout, doctor.stdout + doctor.stderr)
     for words in (["gallery"], ["new", "mine", "--from", "cavity", "--end-time", "0.05 s"], ["check", "mine"], ["run", "mine", "-q"], ["plot", "mine/out"]):
