@@ -32,7 +32,8 @@ TEST(Buoyancy, leaves_a_stratified_fluid_at_rest) {
 }
 
 /// Flow that a warm side sets in motion, on one mesh by the differences of runs whose steps are halved. With friction explicit and
-/// implicit, and on a mesh that moves.
+/// implicit, and on a mesh that moves. There an error of order h^2 dt is left, of oblique cells, which hides the slope on 16 x 16 cells
+/// (1.7 of the velocity).
 TEST(Buoyancy, is_second_order_in_time) {
   for (const auto& [name, viscous, moves] : {std::tuple{"explicit", ViscousTreatment::explicit_, false},
                                              {"implicit", ViscousTreatment::implicit, false},
@@ -51,10 +52,10 @@ TEST(Buoyancy, is_second_order_in_time) {
         return Vec3(x[0] + s, x[1] - 0.7 * s, x[2]);
       };
     std::vector<FluidCase<2>> runs;
-    for (const int steps : {32, 64, 128}) {
+    const int n = moves ? 48 : 16;
+    for (const int steps : {64, 128, 256}) {
       runs.emplace_back(MPI_COMM_WORLD,
-                        make_box(BoxCells::quadrilaterals, {16, 16, 1}, Vec3::Zero(), Vec3::Ones()), p,
-                        motion);
+                        make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()), p, motion);
       runs.back().run(0.8, steps);
     }
     const auto apart = [](const FluidCase<2>& a, const FluidCase<2>& b) {
