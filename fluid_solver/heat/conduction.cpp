@@ -178,13 +178,11 @@ void HeatTransport<D>::solve(const HeatLevel& level, const Weights& w) {
       before_ = t;
     }
     set_right_side();
-    iterations_ += solver_
-                       .solve(std::span(right_).first(owned), std::span(t).first(owned),
-                              {.relative_tolerance = heat_tolerance,
-                               .max_iterations = most_heat_iterations,
-                               .is_symmetric = true,
-                               .carried = most_heat_iterations})
-                       .iterations;
+    solver_.solve(std::span(right_).first(owned), std::span(t).first(owned),
+                  {.relative_tolerance = heat_tolerance,
+                   .max_iterations = most_heat_iterations,
+                   .is_symmetric = true,
+                   .carried = most_heat_iterations});
     mesh_.cells.update_ghosts(t);
     if (!scene_.oblique || has_settled(pass)) break;
   }

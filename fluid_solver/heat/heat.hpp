@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,7 +74,6 @@ class HeatTransport {
   /// Largest frequency of internal waves of a stratified fluid, (-beta g . grad T)^(1/2) [1/s]. In a fluid at rest, any buoyancy
   /// between neighbors counts, because it will set the fluid in motion. Collective.
   double buoyancy_rate(const State<D>& state) const;
-  long iterations() const { return iterations_; }
 
  private:
   // Weights of levels n+1, n and n-1: of the extrapolated convection, and of conduction.
@@ -114,10 +112,9 @@ class HeatTransport {
   std::vector<double> right_, before_, vector_;  // of the system, per local cell
   std::vector<double> admittance_, known_;       // flow at a boundary face: known - admittance T_P
   Vectors<D> gradient_;                          // of T [K/m], non-orthogonal meshes only
-  double beta_ = 0;                              // a dt times the diffusivity, of the system [m^2]
+  double beta_ = 0;                              // diffusivity times dt times the weight of t^{n+1} [m^2]
   std::vector<double> middle_, boundary_middle_;
   std::unique_ptr<linalg::VectorAccelerator> accelerator_;  // for meshes that need many passes
-  long iterations_ = 0;
 };
 
 /// Buoyancy after Boussinesq: -beta (T - T_ref) g per mass. At walls its pressure has the slope of the force at the wall itself:

@@ -19,7 +19,8 @@ namespace {
 
 // Tolerance of the responses, whose errors appear in the balance of the ends.
 constexpr double response_tolerance = 1e-10;
-// Solves of one response, until one needs no iteration. A restart from it then changes no bit.
+// Solves of one response on a mesh at rest, until one needs no iteration. A restart from it then changes no bit. On a moving mesh every
+// sub-step has a solve, which a restart repeats.
 constexpr int most_response_solves = 4;
 // Limit over the faces' conductance. Cells that follow the pressure of an end this closely are ignored.
 constexpr double least_answer = 1e-9;
@@ -82,6 +83,7 @@ class LumpedEnds final : public Term<D> {
     const Placement<D>& at = scene_.around(step_);
     const std::size_t n = ends_.size();
     response_.resize(n);
+    std::vector<double> sums(n + n * n, 0.0);  // |G_i|, G_i.Y_j
     for (std::size_t i = 0; i < n; ++i) {
       std::vector<double>& y = response_[i];
       y.resize(mesh_.cells.n_local(), 0.0);
@@ -93,17 +95,17 @@ class LumpedEnds final : public Term<D> {
       }
       std::vector<double> side(mesh_.cells.n_owned(), 0.0);
       for_faces(i, [&](Index, Index f) { side[mesh_.owner[f]] += at.conductance[f]; });
-      for (int k = 0; k < most_response_solves; ++k)
+      for (int k = 0; k < (step_.moving() ? 1 : most_response_solves); ++k)
         if (equation.solve(at, side, y, response_tolerance, std::numeric_limits<double>::min()).iterations ==
             0)
           break;
+      for (std::size_t c = 0; c < side.size(); ++c) sums[n + n * i + i] += y[c] * side[c];
     }
-    std::vector<double> sums(n + n * n, 0.0);  // |G_i|, G_i.Y_j
     for (std::size_t i = 0; i < n; ++i)
       for_faces(i, [&](Index, Index f) {
         sums[i] += at.conductance[f];
         for (std::size_t j = 0; j < n; ++j)
-          sums[n + n * i + j] += at.conductance[f] * response_[j][mesh_.owner[f]];
+          if (i != j) sums[n + n * i + j] += at.conductance[f] * response_[j][mesh_.owner[f]];
       });
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
     faces_.assign(sums.begin(), sums.begin() + std::ptrdiff_t(n));
@@ -131,9 +133,7 @@ class LumpedEnds final : public Term<D> {
         const double given = ends_[i].volume > 0 ? out.w[b].dot(step_.to->area[f]) : swept(f);
         flux[i] += out.phi[f] - given - factor * at.conductance[f] * out.boundary[b];
       });
-      double answer = 0;
-      for (std::size_t c = 0; c < side.b.size(); ++c) answer += response_[i][c] * side.b[c];
-      flux[i] += factor * answer;
+      for (std::size_t c = 0; c < side.b.size(); ++c) flux[i] += factor * response_[i][c] * side.b[c];
     }
     if (side.size < 0)
       for (const double b : side.b) flux.back() += b * b;
@@ -264,9 +264,13 @@ class LumpedEnds final : public Term<D> {
     const double stiffness = scene_.fluid.rho * scene_.fluid.sound * scene_.fluid.sound / ends_[i].volume;
     double past = 0;
     if (rate > 0 && trapezoidal_) {
-      double sum = 0;
-      for_faces(i, [&](Index b, Index f) { sum += from.phi[f] - from.w[b].dot(from.placement->area[f]); });
-      past = -rate * begin(i) - stiffness * parallel::sum(mesh_.comm, sum);
+      double given = 0, flow = 0;  // into the volume, out of it
+      for_faces(i, [&](Index b, Index f) {
+        given -= from.w[b].dot(from.placement->area[f]);
+        flow -= from.phi[f];
+      });
+      past =
+          -rate * begin(i) - stiffness * (parallel::sum(mesh_.comm, given) - parallel::sum(mesh_.comm, flow));
     } else if (rate > 0) {
       const WaveRule rule = wave_rule(step_);
       for (std::size_t k = 0; k < rule.past.size(); ++k)

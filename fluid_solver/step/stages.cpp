@@ -211,11 +211,13 @@ void Predictor<D>::add_wall_convection(const State<D>& from) {
   }
 }
 
-// Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it.
+// Volume-integrated at t^{n+1/2}, the time of the pressure that may balance it, over the cells in the middle of the step: the swept
+// volumes carry what the force adds to the velocity in half a step.
 template <int D>
 void Predictor<D>::add_forces(const State<D>& from, const Vectors<D>& turned, double e0, double e1) {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
-  for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
+  for (std::size_t c = 0; c < places.size(); ++c)
+    places[c].template head<D>() = 0.5 * (from.placement->centre[c] + step_.to->centre[c]);
   out_.force.assign(places.size(), Vec<D>::Zero());
   out_.beside_walls.clear();
   if (scene_.parameters.rotating_frame) {
@@ -228,7 +230,8 @@ void Predictor<D>::add_forces(const State<D>& from, const Vectors<D>& turned, do
   }
   for (const auto& force : scene_.forces) force->add(step_.begin(), step_.dt, places, turned, out_.force);
   for (const auto& force : scene_.forces) force->add_beside_walls(out_.beside_walls);
-  for (std::size_t c = 0; c < places.size(); ++c) side_[c] += step_.dt * step_.to->volume[c] * out_.force[c];
+  for (std::size_t c = 0; c < places.size(); ++c)
+    side_[c] += step_.dt * 0.5 * (from.placement->volume[c] + step_.to->volume[c]) * out_.force[c];
 }
 
 // sum dV_f u~_f with u~ extrapolated to n+1/2. With rates on a fixed mesh this is the "split" ALE form,

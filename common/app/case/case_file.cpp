@@ -108,9 +108,9 @@ std::string find_participant(const CommandLine& command_line, const Program& pro
 
 /// Problem of an expression in x, y, z, t, of a property (a number or a table of the temperature T), or of a table of the flow rate q.
 std::string problem_of_expression(const config::ExpressionText& text) {
+  if (text.key.name == "pressure-drop") return fv::problem_of_property(text, "q");
   std::string problem = fv::problem_of(text);
   if (problem.find("unknown name 'T'") != std::string::npos) return fv::problem_of_property(text);
-  if (problem.find("unknown name 'q'") != std::string::npos) return fv::problem_of_property(text, "q");
   return problem;
 }
 

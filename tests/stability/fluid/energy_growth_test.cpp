@@ -55,7 +55,7 @@ TEST(EnergyGuard, the_step_that_it_names_counts_the_friction_at_walls) {
   c.step(1e-3);
   const State<2>& s = c.state();
   const std::vector<double> none;
-  const EnergyStep<2> step{s, *s.placement, 1, s.u, s.w, s.phi, none, none, {}, *s.pressure[0]};
+  const EnergyStep<2> step{s, *s.placement, 1, s.u, s.w, s.phi, none, none, {}, {}, *s.pressure[0]};
   const auto named = [&](int row) {
     double limit = 0;
     for (Index k = 0; k < c.mesh().cells.n_owned(); ++k) {

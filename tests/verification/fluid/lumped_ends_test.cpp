@@ -241,11 +241,12 @@ TEST(LumpedEnds, any_resistance_is_stable_at_any_step_and_an_infinite_one_stops_
       }
 }
 
+/// Beyond 1e9 Pa s/m^2, the rounding of the pressure in the flux through a face is seen: 1e-16 of p dt g/rho.
 TEST(LumpedEnds, a_given_flow_through_a_large_resistance_has_its_pressure) {
   for (const double resistance : {1e3, 1e9, 1e15}) {
     FluidCase<2> c(MPI_COMM_WORLD, cells(), tube(inflow("1e-3"), with_resistance(resistance)));
     c.run(1, 10);
-    EXPECT_NEAR(pressure_at(c, "xmax") / (1e-3 * resistance), 1, 1e-8 + 1e-21 * resistance) << resistance;
+    EXPECT_NEAR(pressure_at(c, "xmax") / (1e-3 * resistance), 1, 1e-8 + 1e-20 * resistance) << resistance;
     EXPECT_NEAR(flow_through(c, "xmax"), 1e-3, 1e-13 + 1e-22 * resistance) << resistance;
   }
 }
