@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generalized Newtonian fluids: the viscosity depends on the shear rate.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,7 @@ class LawStress final : public MomentumTerm<D> {
 
   void start(State<D>& s) override {
     const Flow flow = flow_of(s);
+    if (!s.excess.empty()) s.excess_old.swap(s.excess);
     s.excess.resize(mesh_.n_flux_faces());
     for (Index f = 0; f < mesh_.n_flux_faces(); ++f) s.excess[f] = excess(pull(flow, f).shear);
   }
@@ -64,16 +66,24 @@ class LawStress final : public MomentumTerm<D> {
   void add_implicit(const State<D>& from, const FluidStep<D>& step, double a, Vectors<D>& rate,
                     std::vector<double>& added) override {
     const double ratio = step.ratio(), e0 = 1 + ratio / 2, e1 = -ratio / 2;
-    Vectors<D> u = from.u, u_boundary = from.u_boundary;
+    Vectors<D> u = from.u, u_boundary = from.u_boundary, turn = from.turn;
     if (ratio > 0) {
       for (std::size_t c = 0; c < u.size(); ++c) u[c] = e0 * from.u[c] + e1 * from.u_old[c];
       for (std::size_t b = 0; b < u_boundary.size(); ++b)
         u_boundary[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
+      for (std::size_t b = 0; b < from.turn_old.size(); ++b)
+        turn[b] = e0 * from.turn[b] + e1 * from.turn_old[b];
     }
     added.resize(mesh_.n_flux_faces(), 0);
     flux_.assign(rows_.friction.size(), Vec<D>::Zero());
-    add_stress(*from.placement, from, u, u_boundary, step.moving() ? 0.5 : 1, a * step.dt, rate, added);
-    if (step.moving()) add_stress(*step.to, from, u, u_boundary, 0.5, a * step.dt, rate, added);
+    const double share = step.moving() ? 0.5 : 1, implicit = stress_of_law * law_.stiffening() * a * step.dt;
+    velocity_gradient<D>(mesh_, *from.placement, u, u_boundary, gradient_);
+    add_stress({*from.placement, u, u_boundary, turn, gradient_}, from.excess, share, implicit, rate, added);
+    if (step.moving()) {
+      velocity_gradient<D>(mesh_, *step.to, u, u_boundary, gradient_);
+      add_stress({*step.to, u, u_boundary, turn, gradient_}, from.excess, share, implicit, rate, added);
+    }
+    if (ratio > 0 && !from.excess_old.empty()) keep_less(from, step, implicit, added, rate);
   }
 
   std::span<const Vec<D>> boundary_flux() const override { return flux_; }
@@ -149,17 +159,32 @@ class LawStress final : public MomentumTerm<D> {
       flux_[f - mesh_.n_interior] += flux;
   }
 
-  void add_stress(const Placement<D>& at, const State<D>& from, const Vectors<D>& u,
-                  const Vectors<D>& u_boundary, double share, double implicit, Vectors<D>& rate,
-                  std::vector<double>& added) {
-    velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
-    const Flow flow{at, u, u_boundary, from.turn, gradient_};
-    const double factor = share * implicit * stress_of_law * law_.stiffening();
+  void add_stress(const Flow& flow, const std::vector<double>& before, double share, double implicit,
+                  Vectors<D>& rate, std::vector<double>& added) {
+    const double factor = share * implicit;
     for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
       const Pull here = pull(flow, f);
       const double nu = excess(here.shear);
       add(f, share * nu * here.traction, rate);
-      if (f < mesh_.n_interior || !is_free(f)) added[f] += factor * nu;
+      if (f < mesh_.n_interior || !is_free(f)) added[f] += factor * std::max(nu, before[f]);
+    }
+  }
+
+  /// The second difference in time that ImplicitFriction adds is K (du^{n+1} - r du^n) with the changes du of the last steps and
+  /// K = `added`. Where K grows from step to step, as in a plug that forms, it would gain du K du/2. Less of the old change,
+  /// K du^{n+1} - min(K, K_old) r du^n, gains nothing for any K, and differs by the square of the step.
+  void keep_less(const State<D>& from, const FluidStep<D>& step, double implicit,
+                 const std::vector<double>& added, Vectors<D>& rate) {
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+      const double less = added[f] - implicit * from.excess_old[f];
+      if (!(less > 0)) continue;
+      const Index p = mesh_.owner[f], b = f - mesh_.n_interior;
+      Vec<D> change = from.u_old[p] - from.u[p];
+      if (f < mesh_.n_interior)
+        change += from.u[mesh_.neighbour[f]] - from.u_old[mesh_.neighbour[f]];
+      else
+        change += from.u_boundary[b] - from.u_boundary_old[b];
+      add(f, less / step.dt * step.ratio() * step.to->conductance[f] * change, rate);
     }
   }
 

@@ -260,6 +260,8 @@ void visit(State<D>& s, bool moving, io::Archive archive) {
   if (s.dt_old > 0) {
     field(archive, Entries::cells, "old-velocity", s.u_old);
     field(archive, Entries::owned_boundary, "old-boundary-velocity", s.u_boundary_old);
+    field(archive, Entries::owned_boundary, "old-wall-turn", s.turn_old);
+    field(archive, Entries::flux_faces, "old-excess", s.excess_old);
     field(archive, Entries::cells, "old-rate", s.rates_old.rate);
     if (s.implicit) field(archive, Entries::cells, "old-viscous-rate", s.rates_old.viscous);
     field(archive, Entries::owned_boundary, "old-shear", s.shear_old);

@@ -256,6 +256,7 @@ struct State : FlowHistory<D> {
   Vectors<D> w;           ///< given velocity per boundary face at t^n [m/s]
   Vectors<D> u_boundary;  ///< closed boundary velocity at t^n [m/s]
   Vectors<D> turn;        ///< of the walls per boundary face at t^n, see turn_of() [m^2/s]; only with `turns`
+  Vectors<D> turn_old;    ///< at t^{n-1}; only with a viscosity law
   bool turns = false;     ///< the same on all ranks
   std::vector<double> phi;                 ///< absolute volume flux per flux face at t^n [m^3/s]
   std::vector<double> memory, memory_old;  ///< delta^n, delta^{n-1} per interior face [m^3/s]
@@ -269,6 +270,7 @@ struct State : FlowHistory<D> {
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty without a model
   /// Kinematic viscosity beyond the constant one at t^n per flux face [m^2/s]; empty without a viscosity law.
   std::vector<double> excess;
+  std::vector<double> excess_old;  ///< at t^{n-1}
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
   std::vector<double> phi_old;       ///< at t^{n-1}; empty if convection is explicit everywhere

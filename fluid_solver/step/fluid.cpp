@@ -145,6 +145,10 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     viscous_done_.swap(viscous_force_);
     if (!split_) trial_ = accepted_;
     split_ = true;
+    if (parameters_.viscosity_law && boundary_.walls_turn()) {
+      Vectors<D> turn = wall_turn(time_ + end);
+      set_turn_of(trial_, turn);
+    }
     step_.commit(trial_);
     history_ = trial_;
     done = end;
@@ -177,7 +181,7 @@ template <int D>
 void Fluid<D>::accept() {
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
-  accepted_.turn.swap(turn_);  // of the new level, which commit() reads
+  set_turn_of(accepted_, turn_);  // of the new level, which commit() reads
   accepted_.turns = boundary_.walls_turn();
   if (rejected_) accepted_.largest_speed = 0;
   step_.commit(accepted_);
@@ -305,14 +309,28 @@ void Fluid<D>::check_wall_velocity() const {
       time_ + dt_, place.x(), place.y(), place.z());
 }
 
+/// Turn of all walls at the end of the sub-step; that of interface and body faces as far as it is known.
+template <int D>
+Vectors<D> Fluid<D>::wall_turn(double time) const {
+  Vectors<D> turn = given_turn_;
+  turn.resize(accepted_.w.size(), Vec<D>::Zero());
+  const std::vector<Vec3>& points = step_.points().empty() ? points_at_rest() : step_.points();
+  boundary_.add_turn(mesh_, points, time, turn);
+  return turn;
+}
+
+/// Gives a state the turn of its next level. `turn`: that of the last one on exit.
+template <int D>
+void Fluid<D>::set_turn_of(State<D>& state, Vectors<D>& turn) const {
+  if (parameters_.viscosity_law) state.turn_old = state.turn;
+  state.turn.swap(turn);
+}
+
 /// Mean of the start and the end of the step.
 template <int D>
 void Fluid<D>::add_turning() {
   if (!boundary_.walls_turn()) return;
-  turn_ = given_turn_;
-  turn_.resize(viscous_force_.size(), Vec<D>::Zero());
-  const std::vector<Vec3>& points = step_.points().empty() ? points_at_rest() : step_.points();
-  boundary_.add_turn(mesh_, points, time_ + dt_, turn_);
+  turn_ = wall_turn(time_ + dt_);
   for (std::size_t b = 0; b < turn_.size(); ++b) {
     Vec<D> mean = 0.5 * turn_[b];
     if (!accepted_.turn.empty()) mean += 0.5 * accepted_.turn[b];

@@ -134,6 +134,8 @@ class Fluid {
                               const SubStep<D>& step) const;
   void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
   void add_forces(double share);
+  Vectors<D> wall_turn(double time) const;
+  void set_turn_of(State<D>& state, Vectors<D>& turn) const;
   void add_turning();
 
   const mesh::Mesh& mesh_;

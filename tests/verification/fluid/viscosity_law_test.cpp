@@ -137,8 +137,11 @@ void check_power_law(double index, BoxCells cells, double least_slope) {
     const int n = 16 << i;
     RawMesh raw = cells == BoxCells::triangles ? channel_of(cells, n, n / 4, 0.25) : strip(n);
     if (cells == BoxCells::triangles) perturb_interior(raw, 0.1, 3);
-    FluidCase<2> c(MPI_COMM_WORLD, raw, driven_channel(law));
-    settle(c, 0.05, 4000);
+    FluidParameters p = driven_channel(law);
+    if (cells == BoxCells::triangles)
+      p.time_step = 0.05;  // the limit of cells with few faces asks for far less
+    FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+    cells == BoxCells::triangles ? c.run(20, 400) : settle(c, 0.05, 4000);
     error[i] = relative_error(c, power_profile(law, 1));
     const double volume = cells == BoxCells::triangles ? 0.25 : 2. / n;
     missing = std::max(missing, std::abs(wall_force<2>(c, {"ymin", "ymax"}).x() / volume - 1));
@@ -175,14 +178,14 @@ TEST(PowerLaw, leaves_a_channel_as_it_enters) {
     const int n = 16 << i;
     FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 1)),
                    p);
-    settle(c, 0.02, 3000);
+    c.run(10, 500);
     error[i] = relative_error(c, power_profile(law, 1));
     gradient[i] = c.pressure_error([](const Vec3& x) { return -x.x(); });
   }
   printf("channel with ends: velocity %.2e %.2e, pressure %.2e %.2e\n", error[0], error[1], gradient[0],
          gradient[1]);
   EXPECT_LT(error[1], 2e-3);
-  EXPECT_GT(slope(error[0], error[1]), 1.5);
+  EXPECT_GT(slope(error[0], error[1]), 1.8);
   EXPECT_LT(gradient[1], 5e-3);
 }
 
