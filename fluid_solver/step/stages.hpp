@@ -164,6 +164,7 @@ class EnergyCheck {
   double level_of(const EnergyStep<D>& step) const;
   double energy_at_rest(const EnergyStep<D>& step) const;
   void add_boundary(const EnergyStep<D>& step, double level, double* sums) const;
+  void add_law(const EnergyStep<D>& step, double* sums) const;
   const mesh::Mesh& mesh_;
   const Boundary<D>& boundary_;
   double rho_, mu_, pressure_tolerance_, bulk_;

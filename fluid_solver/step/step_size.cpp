@@ -155,23 +155,26 @@ void StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   peclet_of_.assign(peclet ? mesh_.cells.n_local() : 0, 0.0);
   const bool moving = !s.mesh_flux.empty();
   const auto flux_of = [&](Index f) { return std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0)); };
-  const auto add_interior = [&](const auto& nu_of) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double flux = flux_of(f), g = at.conductance[f];
+    const Vec<2> part(0.5 * flux, 2 * nu_ * g);
+    rates_[p] += part;
+    rates_[n] += part;
+    if (!peclet) continue;
+    const double number = nu_ > 0 ? flux / (nu_ * g) : base::infinity;
+    peclet_of_[p] = std::max(peclet_of_[p], number);
+    peclet_of_[n] = std::max(peclet_of_[n], number);
+  }
+  if (peclet && !s.excess.empty()) {  // with the local viscosity
+    std::ranges::fill(peclet_of_, 0.0);
     for (Index f = 0; f < mesh_.n_interior; ++f) {
-      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-      const double flux = flux_of(f), g = at.conductance[f], nu = nu_of(f);
-      const Vec<2> part(0.5 * flux, 2 * nu_ * g);
-      rates_[p] += part;
-      rates_[n] += part;
-      if (!peclet) continue;
-      const double number = nu > 0 ? flux / (nu * g) : base::infinity;
-      peclet_of_[p] = std::max(peclet_of_[p], number);
-      peclet_of_[n] = std::max(peclet_of_[n], number);
+      const double nu = nu_ + s.excess[f];
+      const double number = nu > 0 ? flux_of(f) / (nu * at.conductance[f]) : base::infinity;
+      for (const Index c : {mesh_.owner[f], mesh_.neighbour[f]})
+        peclet_of_[c] = std::max(peclet_of_[c], number);
     }
-  };
-  if (s.excess.empty())
-    add_interior([nu = nu_](Index) { return nu; });
-  else
-    add_interior([&](Index f) { return nu_ + s.excess[f]; });
+  }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const double friction = boundary_.rows().friction[f - mesh_.n_interior];
     rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), friction * 2 * nu_ * at.conductance[f]);

