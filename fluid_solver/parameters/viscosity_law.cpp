@@ -155,7 +155,7 @@ void declare(config::Section& s, ViscosityLaw& law) {
              {"carreau-yasuda", Type::carreau_yasuda, keys_of(declare_carreau_yasuda)},
              {"cross", Type::cross, keys_of(declare_cross)},
              {"herschel-bulkley", Type::herschel_bulkley, keys_of(declare_herschel_bulkley)}},
-            "dependence of the viscosity on the shear rate, see docs/theory/fluid.md", true);
+            "dependence of the viscosity on the shear rate, see docs/theory/fluid-models.md", true);
 }
 
 }  // namespace couplet::fluid

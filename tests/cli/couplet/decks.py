@@ -91,7 +91,7 @@ def left_out(folder):
     check("patches of the deck suffice: the deck is the mesh, in millimeters", solid["mesh"] == "plain.inp" and solid["mesh-scale"] == 0.001 and solid["boundaries"]["root"]["type"] == "fixed-displacement", solid)
     check("density and gravity in SI", solid["material"]["density"] == "7850 kg/m^3" and solid["gravity"][2] == "-9.81 m/s^2", solid)
     step = "*BOUNDARY\nroot, 1, 3\n*STEP\n*FREQUENCY\n2\n*END STEP\n"
-    for claim, text, words in (("a deck without a step", mesh + STEEL, "nothing to run: no *STEP has one of *STATIC"), ("modes without a density", mesh + STEEL.replace("*DENSITY\n7.85e-9\n", "") + step, "needs *DENSITY"),
+    for claim, text, words in (("a deck without a step", mesh + STEEL, "nothing to run: no *STEP contains one of *STATIC"), ("modes without a density", mesh + STEEL.replace("*DENSITY\n7.85e-9\n", "") + step, "needs *DENSITY"),
                                ("an unknown set", mesh + STEEL + "*BOUNDARY\nnone, 1\n", "'none' is neither a number nor the name of an *NSET"), ("a missing material", mesh + STEEL.replace("NAME=STEEL", "NAME=IRON") + step, "no *MATERIAL, NAME=STEEL"),
                                ("no number", mesh + STEEL.replace("210000", "21x"), "'21x' is not a number"), ("a missing section", mesh + STEEL.partition("*SOLID")[0] + step, "no *SOLID SECTION")):
         (folder / "wrong.inp").write_text(text)

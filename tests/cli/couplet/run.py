@@ -202,7 +202,7 @@ def stop(folder):
     before = {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()}
     for words in ((folder / "a/out",), (folder / "a", "-q"), (folder / "a/out", "--set", "simulation.end-time=900 ms")):
         again = call(bin_, "resume", *words)
-        check(f"a finished run is not resumed {words[1:]}", again.returncode == 0 and "this run is finished (t = 3 s); to go on: couplet resume " in again.stdout
+        check(f"a finished run is not resumed {words[1:]}", again.returncode == 0 and "this run is finished (t = 3 s); to continue it: couplet resume " in again.stdout
               and "--set simulation.end-time='4.5 s'" in again.stdout, again.stdout + again.stderr)
     check("nor changed", before == {file: (file.stat().st_mtime_ns, file.read_bytes()) for file in (folder / "a/out").rglob("*") if file.is_file()})
     shutil.copytree(folder / "a", folder / "longer")

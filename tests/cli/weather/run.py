@@ -152,7 +152,7 @@ class Formats(unittest.TestCase):
         self.assertEqual(w.about, {"latitude": 45, "longitude": 8, "time-zone": 1, "states-at": 0})
         self.assertEqual(w.dni_W_m2[10:14], [300, 700, 400, 0], "10 UTC is 11 local standard time")
         self.assertEqual((w.T_degC[1], w.p_Pa[0], w.rh_pct[0], len(w.hour)), (0, 99573, 91.95, 48))
-        self.assertIn("is UTC; that of the result is +1 h ahead", self.said.getvalue())
+        self.assertIn("are UTC; those of the result are +1 h ahead", self.said.getvalue())
         east = self.convert(pvgis(longitude="135.0"))
         self.assertEqual((max(range(24), key=east.dni_W_m2.__getitem__), east.about["time-zone"]), (19, 9))
         self.refuse("Latitude (decimal degrees):\t45\nLongitude (decimal degrees):\t8\n\ntime,G(i),H_sun,T2m\n20050101:0010,0,0,1\n", "the column for the direct")
