@@ -406,7 +406,7 @@ std::string check_kinematic_viscosity(double viscosity, double density) {
   if (!(viscosity > 0) || !(density > 0) || viscosity / density >= least) return "";
   return fmt::format(
       "viscosity/density is {:.3g} m^2/s (usual: at least {:g} m^2/s): implausible; 'viscosity' is the dynamic viscosity, in "
-      "Pa s: if the kinematic one was meant, it times the density is {:g} Pa s.",
+      "Pa s; if the kinematic viscosity was meant, the dynamic one would be {:g} Pa s.",
       viscosity / density, least, viscosity * density);
 }
 

@@ -44,8 +44,8 @@ TEST(Limits, names_are_in_one_line) {
                      s.value("name", name);
                      s.value("names", names);
                    }),
-      ElementsAre(HasSubstr("name: expected a text in one line"),
-                  HasSubstr("entry 2 of the list: expected a text in one line")));
+      ElementsAre(HasSubstr("name: expected a single line of text"),
+                  HasSubstr("entry 2 of the list: expected a single line of text")));
 }
 
 TEST(Limits, what_is_not_utf8_is_refused_with_its_place) {

@@ -96,7 +96,7 @@ TEST(Series, other_columns_are_not_mixed_into_an_old_file) {
   EXPECT_THAT(support::error_of([&] {
                 Series(own_file(scratch), {"time [s]", "force [N]"}, 0.2);
               }),
-              HasSubstr("its columns are 'time [s],tip x [m]', those of this run are"));
+              HasSubstr("its columns are 'time [s],tip x [m]', but those of this run are"));
 }
 
 TEST(Series, a_row_of_another_length_is_refused) {

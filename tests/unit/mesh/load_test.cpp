@@ -210,10 +210,10 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   // Fluent's are in ASCII or binary, and begin alike.
   for (const char* text : {"(0 \"Fluent mesh\")\n(2 3)\n", "\n(3010 (1 1 8 1 3)\n("})
     EXPECT_THAT(error(write("fluent.msh", text), 3),
-                HasSubstr("fluent.msh' is one of Fluent, which is not read. Export"));
+                HasSubstr("fluent.msh' is a file of Fluent, which is not supported. Export"));
   std::filesystem::create_directories(folder / "constant/polyMesh");
   for (const char* name : {"constant/polyMesh", "constant", "."})
-    EXPECT_THAT(error(folder / name, 3), HasSubstr("' is one of OpenFOAM, which is not read. Export"))
+    EXPECT_THAT(error(folder / name, 3), HasSubstr("' is a file of OpenFOAM, which is not supported. Export"))
         << name;
   EXPECT_THAT(error(folder / "other", 3), HasSubstr("does not exist"));
   EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no solid elements"));
