@@ -70,7 +70,10 @@ StepErrors::Inputs VelocityErrors::add(std::span<const double> before, std::span
   if (first_order || knows_third) {
     seen.highest = first_order ? by_two : norm(third);
     seen.error = std::abs(local_.constant) * std::pow(dt, local_.order + 1) * seen.highest;
-    errors_.add(seen, first_order || judged_ ? 1 : 2);
+    const bool is_second = !first_order && !judged_;
+    if (is_second && begins_with_euler_)
+      seen.error += 0.5 * (0.5 * dt * dt * by_two);  // of each of the two steps
+    errors_.add(seen, is_second ? 2 : 1);
     judged_ = true;
   }
   v_before_.assign(before.begin(), before.end());
@@ -85,7 +88,7 @@ std::vector<double> VelocityErrors::numbers() const {
 }
 
 void VelocityErrors::restore(std::span<const double> numbers, std::vector<double> before) {
-  *this = VelocityErrors(local_);
+  *this = VelocityErrors(local_, begins_with_euler_);
   v_before_ = std::move(before);
   if (numbers.empty()) return;
   base::Numbers saved(numbers, "step errors");
@@ -96,7 +99,7 @@ void VelocityErrors::restore(std::span<const double> numbers, std::vector<double
 std::vector<double> VelocityErrors::state() const { return base::to_numbers(*this); }
 
 void VelocityErrors::restore(std::span<const double> state) {
-  *this = VelocityErrors(local_);
+  *this = VelocityErrors(local_, begins_with_euler_);
   if (!state.empty()) base::from_numbers(state, *this, "step errors");
 }
 

@@ -81,7 +81,9 @@ class VelocityErrors {
   /// Norm of a field like the velocity, the same on all ranks.
   using Norm = std::function<double(std::span<const double>)>;
 
-  explicit VelocityErrors(const TimeSchemeParameters& scheme) : local_(local_error(scheme)) {}
+  /// `begins_with_euler`: the first step of a second-order scheme is one of Euler.
+  explicit VelocityErrors(const TimeSchemeParameters& scheme, bool begins_with_euler = false)
+      : local_(local_error(scheme)), begins_with_euler_(begins_with_euler) {}
   /// Adds a step dt after dt_old that changed the velocity from `before` to `now` [m/s]. `size` is |u| at its
   /// end; `forgotten` is the rate at which damping removes errors [1/s]. A second-order scheme cannot be
   /// judged in its first step, so the next one represents it. Returns the estimate. Collective if `norm` is.
@@ -105,7 +107,8 @@ class VelocityErrors {
   }
 
  private:
-  explicit VelocityErrors(const LocalError& local) : local_(local) {}
+  VelocityErrors(const LocalError& local, bool begins_with_euler)
+      : local_(local), begins_with_euler_(begins_with_euler) {}
   template <class Numbers>
   void visit_sums(Numbers& numbers) {
     int kind = (judged_ ? 1 : 0) + (has_before_ ? 2 : 0);
@@ -115,6 +118,7 @@ class VelocityErrors {
   }
 
   LocalError local_;
+  bool begins_with_euler_;
   std::vector<double> v_before_;  // at the start of the previous step
   bool has_before_ = false;       // also true on a rank without cells
   bool judged_ = false;           // a step has been judged

@@ -47,7 +47,8 @@ class HeatError final : public diagnostics::Diagnostic {
         mesh_(heat.conduction().mesh()),
         geometry_(heat.conduction().geometry()),
         is_steady_(heat.is_steady()),
-        steps_(scheme_of(heat.parameters().scheme)) {}
+        steps_(scheme_of(heat.parameters().scheme),
+               heat.parameters().scheme == HeatParameters::Scheme::three_point) {}
   void observe(diagnostics::Report& report) override;
   void conclude(diagnostics::Report& report) override;
   void visit(io::Archive& archive) override;

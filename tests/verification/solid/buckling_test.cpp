@@ -216,7 +216,7 @@ TEST(BucklingFinding, above_a_factor_of_three_is_told_of_what_bends_and_not_of_w
   };
   EXPECT_EQ(told(0.25, "1e6"), int(base::Severity::warning));
   const diagnostics::Finding& last = last_of("buckling");
-  EXPECT_NE(last.sentence.find("adds 0.3"), std::string::npos) << last.sentence;
+  EXPECT_NE(last.sentence.find("by a fraction of 0.3"), std::string::npos) << last.sentence;
   EXPECT_EQ(told(0.25, "0"), -1);
   EXPECT_EQ(told(0.125, "1e6"), -1);
 }
