@@ -40,6 +40,7 @@ constexpr std::array table{
     FluidRow<D>{"turbulence-model", When::always, finds<D, turbulence_model<D>>},
     FluidRow<D>{"eddies-in-two-dimensions", When::always, finds<D, eddies_in_two_dimensions<D>>},
     FluidRow<D>{"viscosity-law", When::always, finds<D, variation_of_viscosity<D>>},
+    FluidRow<D>{"impossible-temperature", When::always, finds<D, impossible_temperature<D>>},
     FluidRow<D>{"resolved-walls", When::always, finds<D, resolved_walls<D>>},
     FluidRow<D>{"kinetic-energy", When::always, finds<D, kinetic_energy<D>>},
     FluidRow<D>{"compressibility", When::always, finds<D, compressibility<D>>},

@@ -123,6 +123,9 @@ template <int D>
 std::optional<diagnostics::Finding> eddies_in_two_dimensions(const FluidView<D>& view);
 template <int D>
 std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<D>& view);
+/// Temperatures below absolute zero.
+template <int D>
+std::optional<diagnostics::Finding> impossible_temperature(const FluidView<D>& view);
 template <int D>
 std::optional<diagnostics::Finding> resolved_walls(const FluidView<D>& view);
 template <int D>

@@ -81,7 +81,7 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       .unit("m^3/s", 1e-15, 1e6)
       .doc(
           "instead of 'velocity': flow rate into the domain, an expression of t [s], over the area of the patch at that time; in "
-          "2-D per meter of depth (m^2/s)");
+          "2-D per meter of depth, in the same unit");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc(
           "velocity profile for mean-speed and flow-rate. parabolic: zero at the rim of the patch, which must be a straight line in 2-D or a "
@@ -136,7 +136,7 @@ void declare_circuit(config::Section& s, CircuitParameters& c) {
       .not_negative()
       .doc(
           "of what lies behind the outlet: the pressure in it exceeds 'pressure' by this times the flow rate out of the "
-          "fluid; in 2-D per meter of depth (Pa s/m^2)");
+          "fluid; in 2-D per meter of depth, in the same unit");
   s.optional_section<WindkesselParameters>(
       "windkessel", c.windkessel,
       [](config::Section& w, WindkesselParameters& p) {

@@ -267,6 +267,7 @@ class PressureProjection {
   void transposed_flux(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                        std::vector<double>& flux) const;
   Vectors<D> transposed_mean(const Placement<D>& at, const std::vector<double>& value) const;
+  double size_without_level(const Placement<D>& around, double tolerance) const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_rotational();
   void set_distances();
@@ -283,6 +284,7 @@ class PressureProjection {
   Projected<D>& out_;
   Terms<D> terms_;
   PressureEquation<D> equation_;
+  bool has_level_;  // an outlet may have a pressure other than 0
   RightSide side_;
   std::shared_ptr<const Placement<D>> assembled_;  // placement of the matrix
   std::vector<double> versions_;                   // versions of the terms in the matrix

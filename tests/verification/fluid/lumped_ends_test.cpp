@@ -122,6 +122,27 @@ double flow_for_given_pressure(const WindkesselParameters& w, double a, double t
 }
 
 /// The error is relative to the amplitude.
+/// Velocities in a viscous channel after three pulses, with times at rest between them.
+Vectors<2> after_pulses(const std::string& pressure) {
+  FluidParameters p = fluid_of(rho, 1, 1e-6);
+  p.boundaries["xmin"] = inflow("0.001*max(0, sin(2*pi*t))");
+  p.boundaries["xmax"] = opening(pressure);
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
+  FluidCase<2> c(MPI_COMM_WORLD, cells(20, 10), p);
+  for (int k = 0; k < 100; ++k) c.step(0.03);
+  return c.state().u;
+}
+
+TEST(OutletPressure, does_not_change_the_flow_by_its_level) {
+  const Vectors<2> at_zero = after_pulses("0"), at_high = after_pulses("5e6");
+  double most = 0, apart = 0;
+  for (std::size_t i = 0; i < at_zero.size(); ++i) {
+    most = std::max(most, at_zero[i].norm());
+    apart = std::max(apart, (at_high[i] - at_zero[i]).norm());
+  }
+  EXPECT_LT(apart, 1e-4 * most);
+}
+
 TEST(LumpedEnds, a_windkessel_behind_a_pulsing_channel_has_the_pressure_of_its_circuit) {
   const double a = 1e-3;
   FluidCase<2> c(MPI_COMM_WORLD, cells(), tube(inflow("1e-3*(1 - cos(2*pi*t))"), with_windkessel()));
