@@ -25,7 +25,7 @@ constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
 constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
 // The first pass only provides the gradient of the non-orthogonal part for the second one, which reduces its
 // error by that part's share of the operator.
-constexpr double rounding = 1e-13;  // of a right-hand side, over its norm
+constexpr double round_off_of_side = 1e-13;  // of a right-hand side, over its norm
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 template <int D>
@@ -262,7 +262,7 @@ double PressureProjection<D>::size_without_level(const Placement<D>& around, dou
     squares[0] += left * left, squares[1] += b * b;
   }
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  return std::max(std::sqrt(squares[0]), rounding / tolerance * std::sqrt(squares[1]));
+  return std::max(std::sqrt(squares[0]), round_off_of_side / tolerance * std::sqrt(squares[1]));
 }
 
 template <int D>
