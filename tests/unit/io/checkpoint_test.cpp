@@ -137,7 +137,7 @@ TEST(Checkpoint, values_that_are_each_ranks_own_are_refused_on_another_number_of
     CheckpointReader reader(MPI_COMM_SELF, file);
     EXPECT_EQ(reader.read_common("time").front(), 1.25);
     EXPECT_THAT(support::error_of([&] { reader.read("solid/displacement"); }),
-                HasSubstr(fmt::format("was written on {} ranks, this run has 1", size)));
+                HasSubstr(fmt::format("was written on {} ranks, but this run has 1", size)));
   }
   MPI_Barrier(world);
 }
