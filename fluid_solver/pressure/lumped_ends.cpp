@@ -26,6 +26,8 @@ constexpr int most_response_solves = 4;
 constexpr double least_answer = 1e-9;
 // Tolerance of the equation that the known pressures allow, over what they are in it: rounding of the guess, reduced further.
 constexpr double known_rounding = 1e-20;
+// The same over the changes of these pressures in the step, if the response to them is known exactly.
+constexpr double change_rounding = 1e-15;
 // Flow rate by which a point of a table may be missed, over the largest flow rate of the table.
 constexpr double point_rounding = 1e-12;
 
@@ -140,7 +142,7 @@ class LumpedEnds final : public Term<D> {
     MPI_Allreduce(MPI_IN_PLACE, flux.data(), int(flux.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
     solve(flux, factor);
     side.ends.resize(ends_.size(), 0.0);
-    double squares[2] = {};  // of what the known pressures, and the changes of all, are in b
+    double squares[3] = {};  // in b: of the pressures of circuits, of their changes, of changes of volumes
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const bool is_volume = ends_[i].volume > 0;  // its pressure stays in b, whose size is that of changes
       const double p = pressure_[i], change = p - last(i);
@@ -151,7 +153,7 @@ class LumpedEnds final : public Term<D> {
           side.b[mesh_.owner[f]] += g * p;
         else
           squares[0] += g * p * g * p;
-        squares[1] += std::pow(g * change, 2);
+        squares[is_volume ? 2 : 1] += std::pow(g * change, 2);
       });
       if (is_volume) continue;
       side.known.resize(mesh_.cells.n_local(), 0.0);
@@ -161,11 +163,10 @@ class LumpedEnds final : public Term<D> {
       }
     }
     side.ends = pressure_;
-    MPI_Allreduce(MPI_IN_PLACE, squares, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    // In a fluid at rest, the pressure of an end may be the only one.
-    const double size = side.size < 0 ? std::sqrt(flux.back()) : side.size;
-    side.size = std::hypot(size, std::sqrt(squares[1]));
-    side.floor = known_rounding * std::sqrt(squares[0]);
+    MPI_Allreduce(MPI_IN_PLACE, squares, 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    side.size = std::hypot(side.size < 0 ? std::sqrt(flux.back()) : side.size, std::sqrt(squares[2]));
+    side.floor = known_rounding * std::sqrt(squares[0]) +
+                 (alone_ && ends_.size() == 1 ? change_rounding : response_tolerance) * std::sqrt(squares[1]);
   }
   void complete(PressureLevel<D>& level) const override {
     level.ends = pressure_;
@@ -377,7 +378,7 @@ class LumpedEnds final : public Term<D> {
   bool alone_ = false;  // no other condition gives the level of the pressure
   std::vector<double> pressure_;
   std::vector<EndLaw> laws_;
-  /// Of values at t^{n+1}, t^n, t^{n-1}: flows, and pressures of compliances, which do not jump at the start of a flow.
+  /// Weights of the values at t^{n+1}, t^n, t^{n-1}: of flows, and of pressures of compliances, which do not jump at the start of a flow.
   std::array<double, 3> weight_{}, stored_weight_{};
   const CircuitsState* before_ = nullptr;                 // of level n
   std::vector<std::vector<double>> response_, accepted_;  // Y per end and local cell
