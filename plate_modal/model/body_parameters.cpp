@@ -118,7 +118,7 @@ std::string problem_of_inertia(const BodyParameters& p) {
   const Vec3 moments = solver.eigenvalues();
   if (!(moments[0] > 0)) return "the moments of inertia must be above 0";
   // The integral of rho x^2 is not negative.
-  if (axes > 1 && moments[2] > (moments[0] + moments[1]) * (1 + 1e-9))
+  if (n > 1 && moments[2] > (moments[0] + moments[1]) * (1 + 1e-9))
     return fmt::format(
         "no body has the principal moments {:.6g}, {:.6g}, {:.6g}: the largest is at most the sum of the others",
         moments[0], moments[1], moments[2]);
@@ -138,7 +138,6 @@ std::string problem_of_held(const BodyParameters& p) {
 }
 
 void check_body_together(config::Section& s, const BodyParameters& p) {
-  s.check([&p] { return p.dimension == 2 || p.dimension == 3 ? "" : "2 or 3 is needed"; }, "dimension");
   s.check([&p] { return problem_of_held(p); }, p.hinge ? "hinge" : "held");
   s.check(
       [&p] {
