@@ -39,7 +39,7 @@ std::vector<Item> describe(const Section::Declare& declare, Describe extent) {
     }
     for (const auto& [name, keys] : d.cases)
       if (all || name == word->current) item.cases.emplace_back(name, describe(keys, extent));
-    // Of a number or a mapping, the one that is there.
+    // The case gives a number or a mapping; this is the one that it gives.
     if (!all && !items.empty() && items.back().facts.name == item.facts.name) {
       if (item.is_present) items.back() = std::move(item);
       return;

@@ -116,7 +116,7 @@ struct AbsorbingPatch {
   bool inlet = false;  ///< given velocity; else given pressure
 };
 
-/// What lies behind openings outside the mesh, at one pressure: a volume before the inlets, or a circuit behind an outlet.
+/// Part of a system without a mesh, at one pressure behind openings: a volume upstream of the inlets, or a circuit behind an outlet.
 struct LumpedEnd {
   std::string name;  ///< its patch, or "upstream"
   std::vector<FaceRange> faces;
@@ -155,7 +155,7 @@ class Boundary {
 
   /// Sets w at time t [m/s] at faces with given velocity; interface faces keep their value.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
-  /// The same with given flow rates through the areas at that time. Collective.
+  /// Sets w likewise, and where a flow rate is given, scales it to the area of the patch at that time. Collective.
   void velocity_at(double t, const mesh::Mesh& mesh, const Placement<D>& at, Vectors<D>& w) const;
   /// True on all ranks if some walls may rotate or stretch.
   bool walls_turn() const { return turns_; }

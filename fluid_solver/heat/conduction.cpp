@@ -136,7 +136,7 @@ void HeatTransport<D>::apply(std::span<const double> x, std::span<double> y) {
   }
 }
 
-/// What conduction at t^{n+1} does not owe to the temperatures of the two cells of a face.
+/// Sets the right-hand side: all of conduction at t^{n+1} but the part due to the temperatures of the two cells of a face.
 template <int D>
 void HeatTransport<D>::set_right_side() {
   const Placement<D>& at = *step_.to;

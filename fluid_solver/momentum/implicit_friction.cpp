@@ -298,7 +298,7 @@ Vec<D> ImplicitFriction<D>::cell_ahead(const State<D>& from, Index c) const {
   return ratio > 0 ? Vec<D>((1 + ratio) * from.u[c] - ratio * from.u_old[c]) : from.u[c];
 }
 
-/// The same of the velocity in the cell of a boundary face less that at the face.
+/// Extrapolates the difference between the velocity in the cell of a boundary face and that at the face to t^{n+1}.
 template <int D>
 Vec<D> ImplicitFriction<D>::jump_ahead(const State<D>& from, Index b) const {
   const double ratio = step_.ratio();

@@ -16,6 +16,8 @@ constexpr GlobalIndex largest_direct = 120000;
 
 namespace {
 
+constexpr double side_rounding = 1e-13;  // of a right-hand side, over its norm
+
 Eigen::Map<Eigen::VectorXd> as_vector(std::span<double> v) { return {v.data(), std::ssize(v)}; }
 Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> v) { return {v.data(), std::ssize(v)}; }
 
@@ -132,6 +134,29 @@ linalg::SolveStatistics PressureEquation<D>::solve_or_report(const Placement<D>&
   } catch (const SolveFailure& failure) {  // on all ranks alike
     throw SolveFailure("{} {}", failure.what(), where());
   }
+}
+
+template <int D>
+double PressureEquation<D>::size_without_level(const Placement<D>& at, std::span<const double> b,
+                                               std::span<const double> given, double tolerance) const {
+  std::vector<double> coefficients(
+      mesh_.cells.n_local());  // of given pressures, summed over the faces of a cell
+  double sums[2] = {};
+  for (const Index face : boundary_.rows().of_pressure) {
+    const Index f = mesh_.n_interior + face;
+    const double row = boundary_.rows().pressure[face] * at.conductance[f];
+    coefficients[mesh_.owner[f]] += row;
+    sums[0] += row * given[face], sums[1] += row;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double mean = sums[1] > 0 ? sums[0] / sums[1] : 0;
+  double squares[2] = {};
+  for (std::size_t c = 0; c < b.size(); ++c) {
+    const double left = b[c] - mean * coefficients[c];
+    squares[0] += left * left, squares[1] += b[c] * b[c];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, squares, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  return std::max(std::sqrt(squares[0]), side_rounding / tolerance * std::sqrt(squares[1]));
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -52,6 +53,10 @@ class PressureEquation {
   linalg::SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
                                 double relative, double absolute, double answer = 0, double size = -1);
   static constexpr double least_answer = 1e-4;
+  /// Norm of b without the contribution of a uniform pressure, the mean of those `given` at boundary faces [Pa], so that a
+  /// tolerance relative to it does not depend on the level of the pressure; at least what rounding allows. Collective.
+  double size_without_level(const Placement<D>& at, std::span<const double> b, std::span<const double> given,
+                            double tolerance) const;
 
  private:
   void make_solver();
@@ -267,7 +272,6 @@ class PressureProjection {
   void transposed_flux(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                        std::vector<double>& flux) const;
   Vectors<D> transposed_mean(const Placement<D>& at, const std::vector<double>& value) const;
-  double size_without_level(const Placement<D>& around, double tolerance) const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_rotational();
   void set_distances();
@@ -284,7 +288,9 @@ class PressureProjection {
   Projected<D>& out_;
   Terms<D> terms_;
   PressureEquation<D> equation_;
-  bool has_level_;  // an outlet may have a pressure other than 0
+  bool has_level_ = std::ranges::any_of(scene_.parameters.boundaries, [](const auto& b) {
+    return b.second.pressure.text != "0";
+  });  // an outlet may have a pressure other than 0
   RightSide side_;
   std::shared_ptr<const Placement<D>> assembled_;  // placement of the matrix
   std::vector<double> versions_;                   // versions of the terms in the matrix

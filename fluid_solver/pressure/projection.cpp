@@ -16,8 +16,7 @@ namespace {
 // Absolute tolerance of the pressure equation relative to the fluxes. Below it there is only round-off, on
 // which a relative tolerance would stall (uniform flow, fluid at rest).
 constexpr double flux_floor = 3e-15;
-// Largest non-orthogonality [degree] at which two passes are stable after an implicit predictor (40 is, 50 is
-// not).
+// Largest non-orthogonality [degree] at which two passes are stable after an implicit predictor; 50 is not.
 constexpr double largest_degrees = 40;
 
 constexpr int oblique_passes = 2, most_oblique_passes = 200;
@@ -25,7 +24,6 @@ constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
 constexpr linalg::Acceleration gradient_acceleration{linalg::Acceleration::Type::anderson, 1, 6};
 // The first pass only provides the gradient of the non-orthogonal part for the second one, which reduces its
 // error by that part's share of the operator.
-constexpr double round_off_of_side = 1e-13;  // of a right-hand side, over its norm
 constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
 
 template <int D>
@@ -50,9 +48,7 @@ PressureProjection<D>::PressureProjection(const Scene<D>& scene, const FluidStep
       terms_(make_terms(scene, step, prediction)),
       equation_(scene.mesh, scene.boundary,
                 !moving && scene.parameters.bodies.empty() &&
-                    std::ranges::none_of(terms_, [](const auto& term) { return term->is_in_matrix(); })),
-      has_level_(std::ranges::any_of(scene.parameters.boundaries,
-                                     [](const auto& b) { return b.second.pressure.text != "0"; })) {}
+                    std::ranges::none_of(terms_, [](const auto& term) { return term->is_in_matrix(); })) {}
 
 template <int D>
 void PressureProjection<D>::prepare(const State<D>& from) {
@@ -240,31 +236,6 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
   for (const auto& term : terms_) term->balance(equation_, out_);
 }
 
-/// Norm of the right-hand side without the contribution of a uniform pressure, the mean of those given at the boundary, so that the
-/// tolerance does not depend on the level of the pressure; at least what rounding allows. Negative if no pressure is given.
-template <int D>
-double PressureProjection<D>::size_without_level(const Placement<D>& around, double tolerance) const {
-  if (!has_level_) return -1;
-  std::vector<double> level(mesh_.cells.n_local());  // sum of the coefficients of given pressures
-  std::array<double, 2> sums{};
-  for (const Index b : scene_.boundary.rows().of_pressure) {
-    const Index f = mesh_.n_interior + b;
-    const double row = scene_.boundary.rows().pressure[b] * around.conductance[f];
-    level[mesh_.owner[f]] += row;
-    sums[0] += row * out_.boundary[b], sums[1] += row;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  if (!(sums[1] > 0)) return -1;
-  const double mean = sums[0] / sums[1];
-  std::array<double, 2> squares{};
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double b = side_.b[c], left = b - mean * level[c];
-    squares[0] += left * left, squares[1] += b * b;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, squares.data(), 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  return std::max(std::sqrt(squares[0]), round_off_of_side / tolerance * std::sqrt(squares[1]));
-}
-
 template <int D>
 void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance,
                                            double answer) {
@@ -277,7 +248,6 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     for (const Index b : scene_.boundary.rows().of_pressure)
       out_.boundary[b] -= scene_.fluid.rho * potential(now.boundary_centre[b]);
   for (const auto& term : terms_) term->foresee(from, out_);
-  side_.size = -1;
   side_.floor = 0;
   side_.known.clear();
   side_.b.assign(mesh_.cells.n_local(), 0.0);
@@ -290,7 +260,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   }
   scene_.obstacles->before(side_.b, out_.p);
   side_.b.resize(mesh_.cells.n_owned());
-  side_.size = size_without_level(around, tolerance);
+  side_.size = has_level_ ? equation_.size_without_level(around, side_.b, out_.boundary, tolerance) : -1;
   for (const auto& term : terms_) term->before(out_, side_);
   const double floor =
       std::max(side_.floor, flux_floor * factor * std::sqrt(parallel::sum(mesh_.comm, size)));

@@ -317,7 +317,7 @@ struct Prediction {
   Vectors<D> w;      ///< given velocities at t^{n+1} per boundary face, as far as known [m/s]
   Vectors<D> u;      ///< u^p per local cell [m/s]
   Vectors<D> force;  ///< f at t^{n+1/2} per local cell [m/s^2]; empty if there is none
-  /// What the pressure of walls balances beside f of their cells, per boundary face at t^{n+1/2} [m/s^2]: R/V of the cell in a
+  /// Force that the pressure at walls balances in addition to f of their cells, per boundary face at t^{n+1/2} [m/s^2]: R/V of the cell in a
   /// rotating frame, the change of buoyancy from cell to face. Empty without either.
   Vectors<D> beside_walls;
   Vectors<D> viscous_flux;  ///< momentum flux to the surroundings, per boundary face [N]

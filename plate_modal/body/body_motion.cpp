@@ -15,7 +15,7 @@ namespace {
 constexpr int most_body_iterations = 60;
 /// Correction of Newton's method relative to the motion of the step, at which it has converged.
 constexpr double converged_tolerance = 1e-15;
-/// The same for a correction that does not become smaller because of round-off.
+/// Relative Newton correction below which only round-off is left.
 constexpr double stalled_tolerance = 1e-9;
 /// Difference of the numerical Jacobian, in units of the body's radius of gyration.
 constexpr double jacobian_difference = 1e-6;

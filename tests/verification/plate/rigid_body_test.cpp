@@ -400,7 +400,7 @@ TEST(RigidBody, the_surface_points_out_of_the_body_whichever_mesh_it_comes_from)
               ::testing::HasSubstr("has 2 dimensions"));
 }
 
-/// What reading these keys of a body says.
+/// Errors of reading these keys of a body.
 std::string said_of(const std::string& keys) {
   Parameters p;
   return support::error_of([&] {
