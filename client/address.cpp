@@ -57,7 +57,7 @@ socklen_t address_of(const std::string& name, int family, int port, sockaddr_sto
   ::freeifaddrs(all);
   if (size == 0)
     refuse("There is no network interface '" + name + "' with an IPv" + (family == AF_INET6 ? '6' : '4') +
-           " address; there are: " + known + ".");
+           " address; the available interfaces are: " + known + ".");
   return size;
 }
 

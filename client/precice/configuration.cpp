@@ -154,8 +154,8 @@ class Reader {
         xml_.refuse(child,
                     "\"" + c_.participant + "\" neither provides nor receives the mesh \"" + mesh + "\".");
       if (!used->provided)
-        xml_.refuse(child, "data on a received mesh (\"" + mesh +
-                               "\") are not supported: direct access and just-in-time mapping.");
+        xml_.refuse(child, "reading or writing data on a received mesh (\"" + mesh +
+                               "\") is not supported (direct access and just-in-time mapping).");
       c_.data.push_back({mesh, datum, is_vector_[datum], written});
     }
   }

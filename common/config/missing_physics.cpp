@@ -106,7 +106,7 @@ struct Removed {
 constexpr Removed removed[] = {
     {coupling, "error-estimate", "set 'diagnostics: without-errors' for 'error-estimate: false'"},
     {coupling, "neglected-share", "set 'neglected-limit', the new name of this key"},
-    {coupling, "both min-iterations", "remove it: a step has converged when either limit is met"},
+    {coupling, "both min-iterations", "remove it: a step converges if the absolute or relative limit is met"},
     {coupling, "maximum-columns", "remove it, or set 'reused-steps'"},
     {coupling, "waveform", "remove it: the input of sub-steps is interpolated linearly in time"},
     {coupling, "on-divergence", "remove it, or set 'simulation: {accept: [interface-oscillation]}'"},

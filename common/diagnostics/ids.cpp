@@ -73,7 +73,7 @@ constexpr std::array ids{
     FindingId{neglected, "near-incompressibility", "Poisson's ratio is near 0.5, but the volume strain is not constant per cell", {"solid_solver", "solution-method.volume-strain: cells", "largest Poisson's ratio; limit 0.45"}},
     FindingId{neglected, "thermal-strain", "the temperature would cause thermal strain", {"solid_solver", "thermal-expansion", "ratio of the free thermal strain to the displacement gradient; without an `expansion` for information"}},
     FindingId{neglected, "storage-of-heat", "the thermal conditions change too fast for a steady temperature", {"solid_solver", "heat.analysis: transient", "ratio of the heat diffusion time to the time in which the steady temperature changes"}},
-    FindingId{neglected, "thermoelastic-coupling", "the heat of deformation would stiffen the body noticeably", {"solid_solver", "thermoelastic-coupling: true", "relative stiffening by the heat of deformation"}},
+    FindingId{neglected, "thermoelastic-coupling", "thermoelastic coupling would noticeably stiffen the body", {"solid_solver", "thermoelastic-coupling: true", "relative stiffening due to thermoelastic coupling"}},
     // thermocline
     FindingId{answer, "questionable-plant", "the weather, calendar or prices of the plant are questionable"},
     FindingId{answer, "tank-state", "a material or closure of the tank was used outside its range of validity"},
@@ -85,7 +85,7 @@ constexpr std::array ids{
     FindingId{neglected, "radiation-between-the-grains", "radiation between the grains of a gas bed is neglected", {"thermocline", "filler.emissivity above 0", "width that it adds to a front, relative to the bed height (gas only)"}},
     FindingId{neglected, "pressure-loss-of-the-bed", "the bed's pressure loss consumes a noticeable part of the heat", {"thermocline", "pump", "ratio of the pump or fan power to the heat transported by the largest flow"}},
     FindingId{neglected, "bending-of-the-wall", "bending adds to the stress of the wall", {"thermocline", "external-wall", "contribution of bending to the largest equivalent stress, relative to the stress computed with rings"}},
-    FindingId{neglected, "specific-heat-of-a-gas-by-its-temperature", "the specific heat varies with temperature", {"thermocline", "", "relative difference between the mean specific heat over the temperature range of the run and the constant"}},
+    FindingId{neglected, "specific-heat-of-a-gas-by-its-temperature", "the specific heat varies with temperature", {"thermocline", "", "relative difference between the mean specific heat over the temperature range of the run and the constant specific heat of the model"}},
 };
 // clang-format on
 

@@ -18,7 +18,7 @@ namespace {
 
 /// Largest distance of faces or points that coincide, relative to the size of a face.
 constexpr double touching = 1e-4;
-/// Largest cosine of the angle between the outer normals of faces that lie on each other.
+/// Largest cosine of the angle between the outer normals of coincident faces.
 constexpr double opposite = -0.95;
 /// Least cosine of the angle between neighboring faces of one curved surface; beyond it they meet at an edge.
 constexpr double smooth = 0.85;
@@ -88,7 +88,7 @@ std::vector<Corners> all_elements(MPI_Comm comm, const MeshBlock& block) {
   return parallel::all_gather(comm, elements);
 }
 
-/// Pairs of points of two elements that lie on each other. Empty if they do not, or are the same.
+/// Pairs of points of two coincident elements. Empty if the elements do not coincide or share their points.
 std::vector<std::array<GlobalIndex, 2>> common_points(const Corners& a, const Corners& b) {
   std::vector<std::array<GlobalIndex, 2>> pairs;
   bool differ = false;
@@ -170,7 +170,7 @@ void tie_touching_faces(MPI_Comm comm, MeshBlock& block) {
     }
   const auto tied = std::ranges::count(is_tied, true);
   if (tied == 0)
-    log::warn("touching-faces: tie: no two faces in groups of the mesh lie on each other");
+    log::warn("touching-faces: tie: no two faces in groups of the mesh coincide, so nothing was tied");
   else
     log::info("{} faces of parts that touch are tied in pairs", tied);
   std::map<GlobalIndex, GlobalIndex> moved;

@@ -20,7 +20,7 @@ struct TouchingFaces {
 /// another size on the other side are found, too. The same on all ranks. Collective.
 std::vector<TouchingFaces> find_touching_faces(const Mesh& mesh, const Geometry& geometry);
 
-/// Joins the points of boundary elements that lie on each other and removes these elements, so that their
+/// Joins the points of coincident boundary elements and removes these elements, so that their
 /// cells become neighbors. Elements on one with other corners stay. Collective.
 void tie_touching_faces(MPI_Comm comm, MeshBlock& block);
 

@@ -317,8 +317,8 @@ std::string difference_of(const SurfaceFacts& a, const SurfaceFacts& b, double l
   if (!(size > 0) || !(area > 0)) return "";
   const auto of = [&](const char* what, double apart, const std::string& one, const std::string& other) {
     return apart <= limit ? std::string()
-                          : fmt::format("{} {} ({}) and {} ({}), {:.2g} % apart (limit {:.2g} %)", what, one,
-                                        a.names, other, b.names, 100 * apart, 100 * limit);
+                          : fmt::format("{} {} ({}) and {} ({}), which differ by {:.2g} % (limit {:.2g} %)",
+                                        what, one, a.names, other, b.names, 100 * apart, 100 * limit);
   };
   const double box = std::max((a.low - b.low).cwiseAbs().maxCoeff(), (a.high - b.high).cwiseAbs().maxCoeff());
   for (const std::string& found :
@@ -342,8 +342,8 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
       diagnostics::finding(
           parallel::comm_rank(comm),
           {.id = "surfaces-apart",
-           .sentence = fmt::format("surfaces that move together differ: {}: parts of one surface have no "
-                                   "partner on the other",
+           .sentence = fmt::format("the coupled surfaces do not match, so parts of one surface have no "
+                                   "partner on the other: {}",
                                    difference),
            .advice = "check the meshes' units and dimensions, and which patches have `type: interface`"});
   }

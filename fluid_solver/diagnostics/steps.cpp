@@ -192,8 +192,8 @@ std::optional<diagnostics::Finding> kinetic_energy(const FluidView<D>& view) {
        .what =
            fmt::format("kinetic energy not supplied by boundaries or forces = {:.2g} of the total", excess),
        .advice =
-           "the numerical schemes generate it: a run with half the step and without the fluid's 'time-step', and one with a "
-           "finer mesh, show which scheme does",
+           "the numerical schemes create this energy. To find out which scheme does, repeat the run with half the step and "
+           "without the fluid's 'time-step', and again with a finer mesh",
        .left_out = false,
        .wrong_from = 0.5});
 }

@@ -133,7 +133,7 @@ Midsurface midsurface_of(const mesh::RawMesh& raw, std::span<const int> curves) 
       const std::pair<Index, Index> edge = std::minmax(from, to);
       const Vec2 middle = 0.5 * (s.points[from] + s.points[to]);
       if (uses[edge] > 2)
-        throw Error("{} cells of the mid-surface meet at the edge at ({:.6g}, {:.6g}); it must be one sheet.",
+        throw Error("{} cells meet at the edge at ({:.6g}, {:.6g}). The mid-surface must be a single sheet.",
                     uses[edge], middle.x(), middle.y());
       if (uses[edge] == 2) continue;
       const auto found = elements.find(edge);

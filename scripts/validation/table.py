@@ -103,16 +103,17 @@ def renewed(bar, row, history):
 
 
 def counts(verdicts):
-    """'41 of 42 criteria met, 3 reported': what is only reported is no criterion."""
+    """'41 of 42 criteria are met; 3 further rows have no criterion': a row that only reports has no criterion."""
     verdicts = list(verdicts)
     reported = sum(v in ("reported", "stale (reported)") for v in verdicts)
-    text = f"{verdicts.count('met')} of {len(verdicts) - reported} criteria met"
-    text += f", {reported} {'row only reports' if reported == 1 else 'rows only report'}" if reported else ""
-    for word, found in (
-        ("stale", sum(v.startswith("stale") for v in verdicts)),
-        ("not measured", verdicts.count("not measured")),
+    met = verdicts.count("met")
+    text = f"{met} of {len(verdicts) - reported} criteria {'is' if met == 1 else 'are'} met"
+    for found, one, several in (
+        (reported, "further row has no criterion", "further rows have no criterion"),
+        (sum(v.startswith("stale") for v in verdicts), "row is stale", "rows are stale"),
+        (verdicts.count("not measured"), "criterion has not been measured", "criteria have not been measured"),
     ):
-        text += f", {found} {word}" if found else ""
+        text += f"; {found} {one if found == 1 else several}" if found else ""
     return text
 
 
@@ -140,8 +141,8 @@ def write(file, name, table, note="", age=""):
     text = (
         f"# Validation: {name}\n\n"
         + (f"**{age}**\n\n" if age else "")
-        + f"This page was written by `scripts/validate {name} --write` on {platform.machine()}"
-        + f" ({counts(row.verdict for _, row in table)}). The last column names the commit that was measured.\n\n"
+        + f"This page was written by `scripts/validate {name} --write` on an {platform.machine()} machine."
+        + f" Result: {counts(row.verdict for _, row in table)}. The last column names the commit that was measured.\n\n"
     )
     text += f"{note}\n\n" if note else ""
     text += "| quantity | criterion | measured | | commit |\n|---|---|---|---|---|\n"

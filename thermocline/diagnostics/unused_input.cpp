@@ -92,8 +92,8 @@ class UnusedInput final : public TankDiagnostic {
     if (held > long_times * span)
       add(report, "given-without-effect", "end",
           fmt::format(
-              "the last row, flow.rows[{}], starts at {:g} s and its flow went on for {:g} s more, {:.0f} times the "
-              "schedule before it: end it by a row without flow, or check the unit of its times",
+              "the last row, flow.rows[{}], starts at {:g} s, and its flow continued for {:g} s, {:.0f} times the duration of "
+              "all rows before it: add a final row without flow, or check the unit of the times",
               flow.rows.size() - 1, flow.rows.back().at, held, held / span));
   }
 

@@ -289,8 +289,8 @@ void declare(config::Section& section, MediumInput& p) {
                          {"caloria-ht43", Type::caloria_ht43, known},
                          {"air", Type::air, gas},
                          {"custom", Type::custom, [&p](config::Section& s) { declare_custom(s, p); }}},
-                        "60 % NaNO3 + 40 % KNO3, the oil of Solar One, dry air (with bed.advection: "
-                        "implicit), or the values given here",
+                        "solar-salt: 60 % NaNO3 and 40 % KNO3; caloria-ht43: the oil of Solar One; air: dry "
+                        "air, with bed.advection: implicit; custom: the values given in this section",
                         true);
 }
 
@@ -353,7 +353,7 @@ void declare(config::Section& section, SteelParameters& p) {
                          {"a387-grade-91", Type::a387, nothing},
                          {"n06022", Type::n06022, nothing},
                          {"custom", Type::custom, custom}},
-                        "a metal of thesis table 5.1, or the values given here", true);
+                        "a metal of thesis table 5.1; custom: the values given in this section", true);
 }
 
 void declare(config::Section& s, InsulatorParameters& p) {

@@ -48,7 +48,7 @@ def series_of(folder, name):
             return found[-1]
     expect(found, f"{folder}: there is no field series (.h5) in it")
     there = dict.fromkeys(n for series in found if series.steps for n in series.names(-1))
-    expect(not there, f"there is no field '{name}'; there are: {', '.join(there)}")
+    expect(not there, f"there is no field '{name}'; the fields are: {', '.join(there)}")
     return found[0]
 
 
@@ -67,7 +67,7 @@ def surface_of(folder, patch):
 
 def values_of(series, i, name, component):
     """One number per cell: a component or the magnitude of a vector; for points the mean over the cell."""
-    expect(name in series.names(i), f"there is no field '{name}'; there are: {', '.join(series.names(i))}")
+    expect(name in series.names(i), f"there is no field '{name}'; the fields are: {', '.join(series.names(i))}")
     field = np.asarray(series.field(i, name), float)
     field = field[:, None] if field.ndim == 1 else field
     if component is None:

@@ -70,7 +70,10 @@ def chosen(columns, options):
     names = [n for n in columns if n != next(iter(columns)) and n not in PLACES]
     if options.only:
         names = [n for n in names if any(word.lower() in n.lower() for word in options.only)]
-        expect(names, f"no column holds {' or '.join(options.only)}; there are: {', '.join(list(columns)[1:])}")
+        expect(
+            names,
+            f"no column name contains {' or '.join(options.only)}; the columns are: {', '.join(list(columns)[1:])}",
+        )
     return names
 
 

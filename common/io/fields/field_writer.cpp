@@ -100,7 +100,7 @@ struct FieldWriter::FieldFiles {
     const parallel::IndexMap& map = on_cells ? mesh.cells : mesh.points;
     const std::size_t n = map.n_owned(), components = field.components;
     if (field.values.size() < n * components)
-      throw Error("The output field '{}' has {} values for {} {} with {} components.", field.name,
+      throw Error("The output field '{}' has only {} values for {} {} with {} components each.", field.name,
                   field.values.size(), n, on_cells ? "cells" : "points", components);
     if (components != 2)
       return write_rows(id, path, on_cells, components, field.values.first(n * components));
@@ -171,11 +171,11 @@ std::vector<std::string> FieldWriter::FieldFiles::read_index(double restart_time
   const double kind = in.number("/", "kind");
   const auto known = {0, int(xdmf::edge_code), 4, 5, 6, 7, 8, 9};
   if (std::ranges::find(known, kind) == known.end())
-    in.refuse(fmt::format("its cells are of the unknown kind {}", kind));
+    in.refuse(fmt::format("its cells have the unknown type {}", kind));
   index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
   const std::uint64_t width = index.kind == 0 ? 1 : std::uint64_t(xdmf::points_of(index.kind));
   if (in.rows("mesh/cell-id", 1) != cell_rows.total || in.rows("mesh/point-id", 1) != point_rows.total)
-    in.refuse("it was written on another mesh");
+    in.refuse("it was written for a different mesh");
   for (const auto& [table, rows, there] : {std::tuple("mesh/cell-id", cell_rows, &cells_there),
                                            std::tuple("mesh/point-id", point_rows, &points_there)}) {
     there->resize(rows.count);
@@ -196,7 +196,7 @@ void FieldWriter::FieldFiles::find_order() {
     cell_order = parallel::GlobalOrder::of_rows(mesh.comm, cells_there, here(mesh.cell_id, cell_rows));
     point_order = parallel::GlobalOrder::of_rows(mesh.comm, points_there, here(mesh.point_id, point_rows));
   } catch (const Error&) {
-    throw Error("The output '{}' cannot be used: it was written on another mesh.", file().string());
+    throw Error("Cannot continue the output '{}': it was written for a different mesh.", file().string());
   }
 }
 
@@ -258,7 +258,7 @@ FieldWriter::FieldWriter(const mesh::Mesh& mesh, std::span<const Vec3> places, s
     part_ = make_part(mesh, places, cells_within(mesh, places, *choice.box));
     if (parallel::sum(mesh.comm, GlobalIndex(part_->entries.size())) == 0) {
       if (parallel::comm_rank(mesh.comm) == 0)
-        log::warn("simulation.output.box contains no cell of '{}': none of its fields are written.", name);
+        log::warn("simulation.output.box contains no cells of '{}', so its fields are not written.", name);
       return;
     }
   }

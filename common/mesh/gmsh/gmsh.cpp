@@ -74,7 +74,7 @@ fs::path including(const fs::path& source, const fs::path& folder) {
 std::string reason(const ProgramEnd& end) {
   if (end.signal == SIGXCPU) return "the limit of 4 hours of processor time was exceeded";
   if (end.signal == SIGXFSZ) return "a file exceeded 64 GB";
-  constexpr int of_signals = 128;  // exit codes of a sandbox or shell whose program was ended by a signal
+  constexpr int of_signals = 128;  // exit codes of a sandbox or shell whose program was killed by a signal
   if (const int signal = end.signal != 0 ? end.signal : end.code - of_signals; signal > 0)
     return fmt::format(
         "gmsh itself crashed or was killed: signal {}, {}; often another cell size, 'Mesh.Algorithm' or 'Mesh.Algorithm3D' in the "
@@ -302,7 +302,7 @@ RawMesh read_foreign(const fs::path& file) {
         file.string(), formats_with_names);
   if (end.code != 0 || !fs::is_regular_file(fs::symlink_status(msh)))
     throw Error("{}", end.signal != 0
-                          ? fmt::format("Cannot read the mesh '{}': python3 was ended by signal {}.",
+                          ? fmt::format("Cannot read the mesh '{}': python3 was killed by signal {}.",
                                         file.string(), end.signal)
                           : complaint(lines));
   for (const std::string& line : lines)

@@ -200,8 +200,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
         geo.string());
   if (!script.computed.empty() && !trusted)
     throw Error(
-        "The {} includes a file with a computed name, so that Couplet does not notice when that file changes. Write "
-        "the name as a text, or start with --allow-commands.",
+        "The {} includes a file whose name is computed, so Couplet cannot detect changes to that file. Write the name as a "
+        "string literal, or start with --allow-commands.",
         script.computed);
   if (!script.lost.empty())
     throw Error(

@@ -46,7 +46,7 @@ with tempfile.TemporaryDirectory() as name:
     assert one.returncode == 0 and (folder / "mine.png").exists(), one.stderr
     for arguments, message in (
         ([folder / "none.csv"], "No such file"),
-        ([folder / "forces.csv", "--only", "lift"], "no column holds lift"),
+        ([folder / "forces.csv", "--only", "lift"], "no column name contains lift"),
         ([folder / "forces.csv", "--from", "9"], "no row between these times"),
         ([folder, "--picture", "x.png"], "--picture names one picture"),
     ):

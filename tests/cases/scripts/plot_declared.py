@@ -86,14 +86,14 @@ CURVE = ("panels", 0, "curves", 0)
 WRONG = [  # when the case is checked
     (("panel",), 1, "plot: unknown key 'panel'; allowed: "), (("panels",), None, "plot: the key 'panels' is missing"), (("panels",), [], "expected at least 1 values"),
     (("size",), [1], "plot.size: expected 2 values, found 1"), (("size",), [1e6, 1], "plot.size: expected width and height from 1 to 100 inch"), (("file",), "../x.png", "plot.file: '../x.png'"), (("panels", 0, "field"), "stress", "panels[0]: expected either curves or field"),
-    (("panels", 0, "warp"), 2, "panels[0]: 'warp' belongs to a field"), (("panels", 2, "participant"), "fluid", "there is no participant 'fluid'; there are: solid"),
+    (("panels", 0, "warp"), 2, "panels[0]: 'warp' belongs to a field"), (("panels", 2, "participant"), "fluid", "there is no participant 'fluid'; the participants are: solid"),
     (("panels", 2, "at"), "soon", "panels[2].at: 'soon' is not a time"), ((*CURVE, "table"), "tip.csv", "curves[0]: expected one of monitor, table"), ((*CURVE, "y"), None, "the key 'y' is missing"),
     ((*CURVE, "style"), "wavy", "curves[0].style: 'wavy'; allowed: line, points"), ((*CURVE, "extrema"), "yes", "curves[0].extrema: expected true or false, found 'yes'"),
     (("panels", 0, "curves", 2, "to"), None, "a function needs 'from' and 'to'"), (("quantities", "tip", "prob"), 1, "plot.quantities.tip: unknown key 'prob'"),
     (("panels", 0, "curves", 1, "optional"), True, "'optional' belongs to a monitor"), (("panels", 0, "curves", 5), {"python": "none.py: f", "y": "a"}, "curves[5].python: 'none.py: f'")]
 LATE = [  # when it is drawn
     ((*CURVE, "y"), "1000*z", "curves[0].y: 'z' is not allowed here; use numbers"), ((*CURVE, "y"), "__import__('os')", "curves[0].y: "), ((*CURVE, "monitor"), "solid/prob.csv", "there is no "),
-    ((*CURVE, "with"), {"y": "tip"}, "curves[0].with.y: "), (("panels", 1, "curves", 0, "with"), {"s": "strain"}, "there is no field 'strain'; there are: stress"), (("panels", 1, "curves", 0, "where"), "x > 9", "no row of solid's fields is left"),
+    ((*CURVE, "with"), {"y": "tip"}, "curves[0].with.y: "), (("panels", 1, "curves", 0, "with"), {"s": "strain"}, "there is no field 'strain'; the fields are: stress"), (("panels", 1, "curves", 0, "where"), "x > 9", "no row of solid's fields is left"),
     ((*CURVE, "colour"), "notacolour", "plot.panels[0]: 'notacolour'"), (("panels", 2, "colours"), "bogus", "plot.panels[2]: 'bogus'"), (("title",), "$\\nosuch$", "plot: "),
     (("quantities", "tip", "probe"), "top", "plot.quantities.tip: ")]
 

@@ -29,7 +29,7 @@ def commit(folder, file, text):
 for wanted, met, verdict in (("<= 1", True, "met"), ("<= 1", False, "not met"), ("reported", True, "reported"),
                              ("<= 1", None, "reported"), ("reported", False, "not met")):
     assert table.verdict_of(wanted, met) == verdict, (wanted, met)
-assert table.counts(["met", "not met", "reported", "stale (met)", "stale (reported)"]) == "1 of 3 criteria met, 2 rows only report, 2 stale"
+assert table.counts(["met", "not met", "reported", "stale (met)", "stale (reported)"]) == "1 of 3 criteria is met; 2 further rows have no criterion; 2 rows are stale"
 
 assert table.without_paths("saved in /home/me/a-b/run.1, 3 m/s, see https://a.org/b/c and docs/x.md") == "saved in ..., 3 m/s, see https://a.org/b/c and docs/x.md"
 

@@ -100,7 +100,7 @@ def by_hand(folder):
         (folder / run / "solid/gaps.csv").write_text(f"time [s],x [N]\n1,{value}\n2,10\n3,{10 + len(value)}\n")
     same = call_here(bin_, "compare", folder / "by-couplet", folder / "a", "--tolerance", "0.5")
     check("compare has one line for each table first, with the largest difference and its place; gaps differ and are not infinite", same.returncode == 1
-          and same.stdout.startswith("solid/gaps.csv: 1 of 2 columns differ, by at most 0.091 of the largest (x [N] at t = 3 s)\n  solid/gaps.csv: x [N]: at most 1 apart")
+          and same.stdout.startswith("solid/gaps.csv: 1 of 2 columns differ, by at most 0.091 of the largest value (x [N] at t = 3 s)\n  solid/gaps.csv: x [N]: the values differ by at most 1,")
           and "a gap in only one run: 1 of 3 values" in same.stdout and "inf" not in same.stdout, same.stdout)
     for run in ("by-couplet", "a/out"):
         (folder / run / "solid/gaps.csv").unlink()
@@ -386,7 +386,7 @@ def tell(folder):
     mode = call_here(bin_, "plot", folder / "plate", "--mode", "7", "--picture", folder / "mode.png")
     check("plot --mode", plate.returncode == 0 and mode.returncode == 0 and (folder / "mode.png").stat().st_size > 5000, plate.stderr + mode.stderr)
     wrong_field = call_here(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
-    check("a field that is not there", wrong_field.returncode == 2 and "there are: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
+    check("a field that is not there", wrong_field.returncode == 2 and "the fields are: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
 
 

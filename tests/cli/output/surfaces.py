@@ -134,5 +134,5 @@ with tempfile.TemporaryDirectory(prefix="couplet-surfaces-") as name:
         picture = fields.draw_surface(folder / part / "out-1", field, patch, folder / f"{part}.png")
         check(f"picture of {field}", picture.stat().st_size > 5000)
     check("drawing names the surfaces that there are", refused("there is: inlet, walls", lambda: fields.draw_surface(folder / "fluid/out-1", "pressure", "wall")))
-    check("and the fields", refused("there are: pressure", lambda: fields.draw_surface(folder / "fluid/out-1", "speed", "walls")))
+    check("and the fields", refused("the fields are: pressure", lambda: fields.draw_surface(folder / "fluid/out-1", "speed", "walls")))
 end()

@@ -419,7 +419,7 @@ def ended(folder):
     imported(folder, configuration("serial-implicit", end=1e6))
     line = [sys.executable, "-m", "couplet", "run", "case.yaml", "--bin", build / "bin", *(w for n in ("Left", "Right") for w in ("--with", f"{n}={programs['c++'][0]} {n} precice-config.xml 1"))]
     surroundings = {**environment, "PYTHONPATH": str(project / "client/python")}
-    for victim, number, said in (("Right", signal.SIGKILL, "'Right' was ended by signal 9"), ("run", signal.SIGINT, "No state was saved: 'Left', a program on preCICE's interface, writes no checkpoint")):
+    for victim, number, said in (("Right", signal.SIGKILL, "'Right' was killed by signal 9"), ("run", signal.SIGINT, "No state was saved: 'Left', a program on preCICE's interface, writes no checkpoint")):
         process = subprocess.Popen(list(map(str, line)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings)
         for words in process.stdout:
             if "step 3 " in words:
@@ -427,7 +427,7 @@ def ended(folder):
         found = [int(pid) for pid in os.listdir("/proc") if pid.isdigit() and words_of(pid)[:2] == [str(programs["c++"][0]), "Right"] and os.readlink(f"/proc/{pid}/cwd") == str(folder.resolve())]
         os.kill(found[0] if victim == "Right" else process.pid, number)
         out, told = process.communicate(timeout=30)
-        check(f"{victim} ended by signal {number}: the reason is named, nothing to resume", process.returncode not in (0, 3) and said in told and "couplet resume" not in told, (process.returncode, told[-500:]))
+        check(f"{victim} killed by signal {number}: the reason is named, nothing to resume", process.returncode not in (0, 3) and said in told and "couplet resume" not in told, (process.returncode, told[-500:]))
     plain = [*mpirun, "-n", 1, build / "bin/coupler", "case.yaml", *(w for n in ("Left", "Right") for w in (":", "-n", 1, programs["c++"][0], n, "precice-config.xml", 1))]
     for attempt in range(3):  # the launcher may end before it has passed a program's last line on
         process = subprocess.Popen(list(map(str, plain)), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
@@ -448,7 +448,7 @@ def ended(folder):
     text = b"a\n" + frame + b"mpirun noticed that process rank 2 with PID 7 on node n exited on\nsignal 9 (Killed).\n" + frame + frame + b"MPI_ABORT was invoked on rank 2\n" + frame + frame + b"of a program\n" + frame + b"unfinished"
     seen = b"".join(pages.feed(text[i:i + 1]) for i in range(len(text))) + pages.feed(b"", last=True)
     check("of mpirun's pages only its own are taken out", seen == b"a\n" + frame + b"of a program\n" + frame + b"unfinished", seen)
-    check("and the process is found in them", culprit(pages.killed, [("coupler", 1), ("Left", 2)]) == "'Left', rank 1, was ended by signal 9 (Killed)", pages.killed)
+    check("and the process is found in them", culprit(pages.killed, [("coupler", 1), ("Left", 2)]) == "'Left', rank 1, was killed by signal 9 (Killed)", pages.killed)
 
 
 def words_of(pid):

@@ -98,7 +98,7 @@ TEST(Diagnostics, a_row_that_never_ran_is_said) {
   EXPECT_NE(said({{0, -10, 600, {}, {}}, {3600, -10, 500, {}, {}}})
                 .find("flow.rows[1] starts at 3600 s, after the end of the run; of 2 rows 1 ran"),
             std::string::npos);
-  EXPECT_NE(said({{0, -10, 600, {}, {}}, {10, -10, 500, {}, {}}}).find("its flow went on for"),
+  EXPECT_NE(said({{0, -10, 600, {}, {}}, {10, -10, 500, {}, {}}}).find("its flow continued for"),
             std::string::npos);
   p.flow.rows = {{0, -10, 600, {}, {}}, {100, -10, 600, {}, {}}, {3600, -10, 500, {}, {}}};
   TankRun run(p);

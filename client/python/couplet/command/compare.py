@@ -63,7 +63,7 @@ def apart(a, b, largest=0.0):
     infinite = ~both & ~missing & ~np.isnan(a) & (a != b)
     most, at = float(gap.max()), np.unravel_index(gap.argmax(), gap.shape)
     share = most / (max(largest, *(float(np.abs(v[both]).max(initial=0)) for v in (a, b))) or 1.0)
-    words = [f"at most {most:.3g} apart, {share:.2g} of the largest"] if most else []
+    words = [f"the values differ by at most {most:.3g}, which is {share:.2g} of the largest value"] if most else []
     for wrong, what in ((missing, "a gap in only one run"), (infinite, "infinite in one run")):
         words += [f"{what}: {wrong.sum()} of {a.size} values"] if wrong.any() else []
     return "; ".join(words), share, at, int(missing.sum() + infinite.sum())
@@ -206,7 +206,7 @@ def summaries(found):
         if not beyond:
             continue
         words, _, share, place = max(beyond, key=lambda row: row[2])
-        most = f"by at most {share:.2g} of the largest ({place})" if share else f"such as: {words}"
+        most = f"by at most {share:.2g} of the largest value ({place})" if share else f"such as: {words}"
         yield f"{file}: {len(beyond)} of {len(rows)} {'columns' if file.endswith('.csv') else 'fields'} differ, {most}"
 
 

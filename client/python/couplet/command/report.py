@@ -87,7 +87,7 @@ def verdict(results, names):
 
 
 def costs(results, names):
-    yield "             steps  iterations  at work [s]  memory [MB]"
+    yield "             steps  iterations     busy [s]  memory [MB]"
     for name in names:
         report = results.report(name)
         working = report.get("processor-working") or report.get("processor", 0)

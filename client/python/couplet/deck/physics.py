@@ -47,7 +47,10 @@ SILENT = re.compile(  # the mesh, and what has no effect on the answer
     "HEADING|PREPRINT|NODE|ELEMENT|NSET|ELSET|SURFACE|(END"
     " )?(PART|ASSEMBLY|INSTANCE)|INCLUDE|RESTART|CONTROLS|MONITOR|DEPVAR|.*(OUTPUT|FILE|PRINT|FORMAT)|END STEP"
 )
-WHY = {"TRANSFORM": "conditions of its nodes are taken along x, y and z", "AMPLITUDE": "loads have their full value"}
+WHY = {
+    "TRANSFORM": "the conditions at its nodes are applied in the global directions x, y and z",
+    "AMPLITUDE": "loads have their full value",
+}
 WHY |= dict.fromkeys(
     ("TIE", "CONTACT PAIR", "CONTACT", "EQUATION", "MPC"), "the parts that it connects are separate here"
 )

@@ -34,7 +34,7 @@ def text(node):
 
 
 def entries(node):
-    """Lines of the functions of a class that have a docstring, or of a function."""
+    """Yields a list entry for each public method of a class that has a docstring, or for a function."""
     for function in node.body if isinstance(node, ast.ClassDef) else [node]:
         if (
             isinstance(function, ast.FunctionDef)

@@ -41,7 +41,7 @@ def write_table(folder, name, columns):
 
 
 def at_middles(mesh, values):
-    """Averages values at points to the cell centers."""
+    """Interpolates point values to the cell centers."""
     return np.concatenate(
         [
             np.einsum("n,cnk->ck", elements.shape_functions(s, mesh.order, [elements.CENTRES[s]])[0], values[c])

@@ -28,7 +28,7 @@ FUNCTIONS |= {
 
 
 class Refused(Wrong):
-    """Case that another program cannot run. The text names the key."""
+    """Raised for a case that the other program cannot run. The message names the key."""
 
 
 def refuse(where, why):

@@ -205,7 +205,7 @@ def check(case):
         for name in [panel[k] for k in ("participant",) if k in panel] + panel.get("bodies", []):
             expect(
                 name in case.participants,
-                f"{where}: there is no participant '{name}'; there are: {', '.join(case.participants)}.",
+                f"{where}: there is no participant '{name}'; the participants are: {', '.join(case.participants)}.",
             )
         if not isinstance(panel.get("at"), dict):
             seconds(panel.get("at"), f"{where}.at")
@@ -215,8 +215,8 @@ def check(case):
             expect(
                 "fields" not in curve or curve["fields"] in case.participants,
                 (
-                    f"{where}.curves[{j}].fields: there is no participant '{curve.get('fields')}'; there are:"
-                    f" {', '.join(case.participants)}."
+                    f"{where}.curves[{j}].fields: there is no participant '{curve.get('fields')}'; the participants"
+                    f" are: {', '.join(case.participants)}."
                 ),
             )
             expect(

@@ -33,15 +33,18 @@ def columns_of(file):
     except OSError as problem:
         raise Wrong(f"{file}: {problem.strerror}.") from None
     except UnicodeDecodeError:
-        raise Wrong(f"{file}: is not a text file; fields: couplet plot FOLDER --field NAME") from None
+        raise Wrong(
+            f"{file}: the file is not a text file; to plot fields, use couplet plot FOLDER --field NAME"
+        ) from None
     comments, rows = [line for line in lines if line.startswith("#")], [
         line for line in lines if not line.startswith("#")
     ]
-    expect(rows, f"{file}: it has no rows.")
+    expect(rows, f"{file}: the file contains no rows.")
     is_bare = comments and all(np.isfinite(number(cell)) for cell in rows[0].split(","))
     columns = read_csv(file, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")] if is_bare else None)
     expect(
-        len(next(iter(columns.values()))), f"{file}: no row has the {len(columns)} values that its first line names."
+        len(next(iter(columns.values()))),
+        f"{file}: no row contains values for all {len(columns)} columns of the header.",
     )
     return {
         name: values if values.dtype == float else np.array([number(v) for v in values])

@@ -74,7 +74,7 @@ def wait_for_end(folder, seconds):
 
 
 def sets_since(folder, seconds):
-    """Names of the complete checkpoints written since then."""
+    """Names of the complete checkpoints written at `seconds` (Unix time) or later."""
     return [
         file.parent.name
         for file in (pathlib.Path(folder).absolute() / "checkpoints").glob("step-*/set.txt")

@@ -86,7 +86,8 @@ class Job:
         known = {*case.participants, *([COUPLER] if case.coupled else [])}
         for name in (*self.ranks, *self.played_by, *([alone] if alone else [])):
             expect(
-                name in known, f"there is no participant '{name}' in {case.file}; there are: {', '.join(sorted(known))}"
+                name in known,
+                f"there is no participant '{name}' in {case.file}; the participants are: {', '.join(sorted(known))}",
             )
         job = ({}, alone, self.ranks, self.sets, self.flags, self.played_by)
         self.parts, self.command = case.parts(*job), [str(w) for w in case.command(*job)]
@@ -281,7 +282,7 @@ class Job:
             return f"'{guest[0]}' ended with exit code {guest[1]}{f': {error}' if error else ''}"
         if self.process.returncode < 0:
             return (
-                f"mpirun was ended by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
+                f"mpirun was killed by signal {-self.process.returncode} ({signal.strsignal(-self.process.returncode)})"
             )
         return last_words(said)
 

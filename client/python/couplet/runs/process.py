@@ -200,5 +200,7 @@ def culprit(killed, sizes):
     rank, number, name = killed
     who, rank, ranks = owner(rank, sizes)
     if who is None:
-        return f"a process was ended by signal {number}"
-    return f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was ended by signal {number}{f' ({name})' if name else ''}"
+        return f"a process was killed by signal {number}"
+    return (
+        f"'{who}'{f', rank {rank},' if ranks > 1 else ''} was killed by signal {number}{f' ({name})' if name else ''}"
+    )

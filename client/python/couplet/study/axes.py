@@ -57,7 +57,7 @@ class Axis:
         return self.multiple * max(1, math.ceil(n / self.multiple - 1e-9) if up else round(n / self.multiple))
 
     def at(self, n):
-        """Settings of a size that need not be in the list."""
+        """Returns the settings for the size n, which need not be one of the listed sizes."""
         return {key: filled(str(text), n) for key, text in self.template.items()}
 
 

@@ -148,7 +148,10 @@ class Variable:
             isinstance(self.sets, dict)
             and self.sets
             and all(isinstance(k, str) and is_number(v) for k, v in self.sets.items()),
-            f"{place}.sets: expected {{key: factor of the variable, ...}} with numbers.",
+            (
+                f"{place}.sets: expected {{key: factor, ...}}, with the number by which the variable is multiplied for"
+                " each key."
+            ),
         )
 
     def at(self, x):

@@ -332,7 +332,7 @@ def for_error(study, text, name, say):
     expect(study.axes.refining, f"{study.case.file}: --for-error needs an axis with 'sizes'.")
     names = [q.name for q in study.quantities]
     quantity = next((q for q in study.quantities if q.name == (name or names[0])), None)
-    expect(quantity, f"--quantity {name}: there is no such quantity; there are: {', '.join(names)}.")
+    expect(quantity, f"--quantity {name}: there is no such quantity; the quantities are: {', '.join(names)}.")
     search = Search(study, quantity, target, say)
     result = said(search, *search.go())
     file = study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json"

@@ -120,8 +120,9 @@ class Study:
         where, asked = machine(), self.case.asked.resolve()
         versions = sorted({r.record.version for r in rows})
         report.text(
-            f"Of {len(rows)} runs, {sum(not r.good for r in rows)} failed. They were measured at"
-            f" {', '.join(versions)} on {where['processor']} with {where['cores']} cores. Times are the"
+            f"Of {len(rows)} runs, {sum(not r.good for r in rows)} failed. The runs were made with"
+            f" {'commits' if len(versions) > 1 else 'commit'} {' and '.join(versions)} on {where['cores']} cores"
+            f" ({where['processor']}). All times are the"
             f" {pictures.CLOCKS[self.clock]}. The table is in `runs.csv`. Repeat the study with `couplet study"
             f" {asked.relative_to(ROOT) if asked.is_relative_to(ROOT) else asked.name}`."
         )

@@ -80,7 +80,7 @@ TEST(Surfaces, meshes_of_one_surface_may_differ) {
 TEST(Surfaces, a_surface_five_per_cent_larger_or_elsewhere_is_named_with_the_number) {
   EXPECT_THAT(difference(scaled(tests::flap(40, 4, 1), 1.05), tests::flap(20, 2, -1)),
               testing::AllOf(HasSubstr("area 2.205 m^2 ('solid') and 2.1 m^2 ('fluid')"),
-                             HasSubstr("4.8 % apart (limit 1.")));
+                             HasSubstr("which differ by 4.8 % (limit 1.")));
   EXPECT_NE(difference(scaled(tests::ring(32), 1.05), tests::ring(40)), "");
   EXPECT_NE(difference(scaled(tests::plate(8, true, 1), 0.95), tests::plate(8, false, -1)), "");
   Interface moved = tests::flap(20, 2, -1);
