@@ -54,7 +54,7 @@ struct Deflection {
   double direct = 0, by_modes = 0, apart = 0;
 };
 
-/// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without a seat the modes are
+/// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without contact, the modes are
 /// independent; with one they are coupled by its forces and solved together by Newton's method.
 class Oscillators final {
  public:
