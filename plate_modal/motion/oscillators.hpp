@@ -55,7 +55,7 @@ struct Deflection {
 };
 
 /// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without contact, the modes are
-/// independent; with one they are coupled by its forces and solved together by Newton's method.
+/// independent. Contact forces couple the modes, which are then solved together by Newton's method.
 class Oscillators final {
  public:
   /// `damping`: c of each mode [1/s]. `gravity`: its load on each mode. `contact`: nullptr without a seat.
