@@ -189,7 +189,7 @@ TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {
   EXPECT_THAT(support::error_of([&] {
                 writer.write(0, geometry.points, {{"p", "Pa", OutputField::Place::points, 3, values}});
               }),
-              HasSubstr("The output field 'p' has 1 values"));
+              HasSubstr("The output field 'p' has only 1 values"));
 }
 
 }  // namespace couplet::field_writer_test
