@@ -3,6 +3,7 @@
 statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package [DEB] | container] [bookworm | trixie]. package: the second image with
 cpack's .deb of BUILD: installed by apt, used by a new user, removed. container: the first image's statements, too, which compile everything, and the
 commands of the quick start there; its .deb is the one used."""
+import fnmatch
 import os
 import pathlib
 import re
@@ -20,10 +21,16 @@ from oscillators_xml import configuration  # noqa: E402
 SUITE = sys.argv.pop() if sys.argv[-1] in ("bookworm", "trixie") else "bookworm"
 build, what = pathlib.Path(sys.argv[1]), (sys.argv[2:] or ["package"])[0]
 MIRROR = "http://deb.debian.org/debian"
-IGNORED = shutil.ignore_patterns(*(line.removeprefix("**/") for line in (ROOT / ".dockerignore").read_text().split()))
+PATTERNS = (ROOT / ".dockerignore").read_text().split()
 if os.geteuid() != 0 or not shutil.which("debootstrap", path=os.environ["PATH"] + ":/usr/sbin"):
     print("skipped: no debootstrap here, or not root")
     sys.exit(77)
+
+
+def ignored(folder, names):
+    """Those that COPY leaves out: a pattern without **/ counts at the top only."""
+    at_top = pathlib.Path(folder) == ROOT
+    return {name for name in names for p in PATTERNS if fnmatch.fnmatch(name, p.removeprefix("**/")) and (at_top or p.startswith("**/"))}
 
 
 class System:
@@ -75,7 +82,7 @@ def make(system, statements, package):
         elif word == "COPY" and rest.startswith("--from="):
             shutil.copy(package, system.folder / rest.split()[-1][1:])
         elif word == "COPY":
-            shutil.copytree(ROOT, system.folder / rest.split()[-1][1:], symlinks=True, ignore=IGNORED)
+            shutil.copytree(ROOT, system.folder / rest.split()[-1][1:], symlinks=True, ignore=ignored)
         elif word == "USER":
             user = rest
         elif word == "ENTRYPOINT":
