@@ -130,6 +130,12 @@ FluidParticipant<D>::FluidParticipant(mesh::LoadedMesh loaded, const FluidParame
   set_up_motion();
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local(), mesh_.boundary.n_owned());
   if (!fluid_->boundary().interface_patches().empty()) set_up_interface(loaded.geometry);
+  std::vector<std::string> conjugate;
+  for (const auto& [patch, boundary] : parameters.boundaries)
+    if (boundary.conjugate) conjugate.push_back(patch);
+  if (conjugate.empty()) return;
+  conjugate_ = std::make_unique<coupling::InterfaceMap>(mesh_, conjugate);
+  if (!interface_) description_ = conjugate_->describe(loaded.geometry);
 }
 
 template <int D>
@@ -183,12 +189,23 @@ void FluidParticipant<D>::set_up_motion() {
 
 template <int D>
 coupling::Interface FluidParticipant<D>::initialise() {
-  if (!interface_) return {};
   // This rank may have no part of the interface; the data are those of all ranks.
   coupling::Interface description = description_;
   using Place = coupling::Interface::Place;
-  description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
-  description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
+  if (conjugate_) {
+    description.takes = {{"film-coefficient", "W/(m^2 K)", Place::faces, 1},
+                         {"ambient-temperature", "K", Place::faces, 1}};
+    description.gives = {{"heat", "W", Place::faces, 1}};
+  }
+  if (!interface_) return description;
+  for (const coupling::Interface::Datum& datum :
+       {coupling::Interface::Datum{"displacement", "m", Place::vertices},
+        {"velocity", "m/s", Place::vertices}})
+    description.takes.push_back(datum);
+  for (const coupling::Interface::Datum& datum :
+       {coupling::Interface::Datum{"pressure-force", "N", Place::faces},
+        {"viscous-force", "N", Place::faces}})
+    description.gives.push_back(datum);
   if (yields()) {
     const coupling::Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
     description.takes.push_back(own);
@@ -215,6 +232,10 @@ void FluidParticipant<D>::log_impulse() const {
 
 template <int D>
 void FluidParticipant<D>::begin_step(const coupling::Step& step) {
+  if (conjugate_ && step.scheme == coupling::Scheme::standalone)
+    throw Error(
+        "The patches with 'conjugate: true' exchange heat with another participant, but this program runs alone: give them a "
+        "'temperature', a 'heat-flux' or a 'film' instead.");
   if (step.number == 0 || holds_volume(fluid_->parameters())) check_cavity(*fluid_, step.scheme);
   step_ = step;
   if (interface_) {
@@ -278,7 +299,14 @@ void FluidParticipant<D>::place_structure(const coupling::Exchange& in) {
 ///   F' = F + F.S/|S|^2 (S' - S)                                                                        (15a)
 template <int D>
 coupling::Exchange FluidParticipant<D>::forces() const {
-  if (!interface_) return {};
+  coupling::Exchange out;
+  if (conjugate_) {
+    const std::vector<double> heat = fluid_->heat()->mean_heat();
+    std::vector<double> given;
+    for (const Index face : conjugate_->faces()) given.push_back(heat[face - mesh_.n_interior]);
+    out["heat"] = conjugate_->gather_faces(given, 1);
+  }
+  if (!interface_) return out;
   const std::vector<Index>& faces = interface_->faces();
   const bool is_carried = !prescribed_ && step_.scheme != coupling::Scheme::standalone;
   std::vector<double> pressure(faces.size() * D), viscous(faces.size() * D);
@@ -291,7 +319,6 @@ coupling::Exchange FluidParticipant<D>::forces() const {
     Eigen::Map<Vec<D>>(pressure.data() + i * D) = force;
     Eigen::Map<Vec<D>>(viscous.data() + i * D) = fluid_->viscous_force()[b];
   }
-  coupling::Exchange out;
   out["pressure-force"] = interface_->gather_faces(pressure, D);
   out["viscous-force"] = interface_->gather_faces(viscous, D);
   if (yields()) {
@@ -303,6 +330,20 @@ coupling::Exchange FluidParticipant<D>::forces() const {
   if (holds_volume(fluid_->parameters()))
     out["inflow"] = interface_->gather_faces(inflow_shares(*fluid_, faces, step_.time, step_.dt), 2);
   return out;
+}
+
+/// Without values yet, as in the first step, no heat passes.
+template <int D>
+void FluidParticipant<D>::take_film(const coupling::Exchange& in) {
+  const std::vector<double> coefficient = conjugate_->scatter_faces(datum(in, "film-coefficient"), 1),
+                            ambient = conjugate_->scatter_faces(datum(in, "ambient-temperature"), 1);
+  std::vector<double> film(mesh_.boundary.n_owned(), 0.), beyond = film;
+  for (std::size_t i = 0; i < coefficient.size(); ++i) {
+    const Index b = conjugate_->faces()[i] - mesh_.n_interior;
+    film[b] = coefficient[i];
+    beyond[b] = ambient[i];
+  }
+  fluid_->heat()->set_film(std::move(film), std::move(beyond));
 }
 
 /// Share of a change between passes that the pressure solver may leave. Passes of the semi-implicit scheme
@@ -325,7 +366,7 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
     return;
   }
   const auto [unseen, of_all] = fluid_->unseen_share(w);
-  if (!renewal_.wanted(mesh_.comm, w, unseen, of_all)) return;
+  if (!renewal_.wanted(mesh_.comm, w, unseen, of_all)) return fluid_->repeat_heat();
   renewed_now_ = true;
   fluid_->prepare(points_, renewal_.guess());
 }
@@ -337,6 +378,7 @@ coupling::Exchange FluidParticipant<D>::solve(const coupling::Exchange& in) {
   if (yields() && step_.scheme != coupling::Scheme::standalone) {
     fluid_->yield_from(wall_load(in));
   }
+  if (conjugate_) take_film(in);
   prepare(w);
   fluid_->set_turn(std::move(turn));
   fluid_->solve_pressure(w, answer());
@@ -357,7 +399,11 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   log_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
-  return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
+  const double energy = fluid_->state().ledger.energy;
+  const bool only_conducts = fluid_->heat() && energy == 0;  // a fluid at rest, but not without effect
+  return {.dt = step_.dt,
+          .iterations = effort() - before,
+          .energy = only_conducts ? coupling::StepReport::unknown : energy};
 }
 
 template <int D>

@@ -23,7 +23,8 @@ using MotionLink = std::function<std::unique_ptr<coupling::MeshMotionSource>(con
 
 /// Interface of the fluid to a coupling. It takes "velocity" (and "displacement", which the mesh mover uses)
 /// at the interface vertices. It gives "pressure-force" and "viscous-force", the forces on the structure, at
-/// the interface faces.
+/// the interface faces. At conjugate faces it takes a film, "film-coefficient" [W/(m^2 K)] and "ambient-temperature" [K] at
+/// t^{n+1}, and gives "heat", the mean of what leaves the fluid [W].
 ///
 ///   scheme              what solve() does
 ///   semi-implicit       every call solves a pressure equation; the first does the rest of the step before
@@ -74,14 +75,17 @@ class FluidParticipant final : public coupling::Participant {
   std::vector<Vec3> receive_points();
   void place_structure(const coupling::Exchange& in);
   coupling::Exchange forces() const;
+  void take_film(const coupling::Exchange& in);
   void log_sub_steps();
 
   const mesh::Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
   std::unique_ptr<coupling::InterfaceMap> interface_;  // nullptr without an interface patch
-  coupling::Interface description_;                    // this rank's part of the interface
-  mesh::Csr interface_vertices_;                       // per interface face: entries of interface_->points()
-  Vectors<D> interface_area_;                          // per interface face, at rest [m^2]
+  std::unique_ptr<coupling::InterfaceMap>
+      conjugate_;                           // nullptr without a conjugate patch; else the same if both exist
+  coupling::Interface description_;         // this rank's part of the interface
+  mesh::Csr interface_vertices_;            // per interface face: entries of interface_->points()
+  Vectors<D> interface_area_;               // per interface face, at rest [m^2]
   Vectors<D> structure_area_, trial_area_;  // of the structure at t^n and t^{n+1}, per boundary face [m^2]
   std::vector<double> cell_height_;         // of the cells at the interface faces, at rest [m]
   std::unique_ptr<coupling::MeshMotionSource> motion_;  // from a mesh mover

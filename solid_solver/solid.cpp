@@ -34,15 +34,15 @@ Solid::Solid(mesh::LoadedMesh body, SolidParameters parameters, SolidContext con
 }
 
 void Solid::begin_step(const coupling::Step& step) {
-  stepper_.begin_step(step, !interface_.takes_temperature());
+  stepper_.begin_step(step, !interface_.is_heated());
   if (!body_.is_dynamic() || step.number != 0) return;
   if (body_.parameters().output.spectrum) output_.write_spectrum(step.dt);
   if (body_.parameters().output.modes > 0) output_.write_modes();
 }
 
 coupling::Exchange Solid::solve(const coupling::Exchange& in) {
-  if (interface_.takes_temperature()) {
-    interface_.take_temperature(in);
+  if (interface_.is_heated()) {
+    interface_.take_heating(in);
     stepper_.prepare_loads();
   }
   stepper_.solve(interface_.load(in));
@@ -122,14 +122,20 @@ ThermalSolid::ThermalSolid(mesh::LoadedMesh body, SolidParameters parameters, So
   }
   io::check_mesh_scale(mesh_, geometry_.points, places, parameters_.mesh_scale);
   check_heat_quantities(*heat_, parameters_.quantities);
+  if (const auto& patches = heat_->boundaries().interface_patches(); !patches.empty()) {
+    map_ = std::make_unique<coupling::InterfaceMap>(mesh_, patches);
+    interface_.emplace(*heat_, *map_);
+  }
   if (!parameters_.output.surfaces.empty())
     surfaces_.emplace(mesh_, geometry_.points, parameters_.output.surfaces, "output.surfaces");
 }
 
 coupling::Interface ThermalSolid::initialise() {
-  coupling::Interface none;
-  none.dim = mesh_.dim;
-  return none;
+  coupling::Interface description;
+  if (map_) description = map_->describe(geometry_);
+  description.dim = mesh_.dim;
+  if (interface_) HeatInterface::describe(description);
+  return description;
 }
 
 void ThermalSolid::begin_step(const coupling::Step& step) {
@@ -137,9 +143,12 @@ void ThermalSolid::begin_step(const coupling::Step& step) {
   step_ = step;
 }
 
-coupling::Exchange ThermalSolid::solve(const coupling::Exchange&) {
+coupling::Exchange ThermalSolid::solve(const coupling::Exchange& in) {
+  if (interface_) interface_->take(in);
   heat_->solve(step_);
-  return {};
+  coupling::Exchange out;
+  if (interface_) interface_->add_film(out);
+  return out;
 }
 
 void ThermalSolid::save(io::CheckpointWriter& file) const {

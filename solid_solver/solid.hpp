@@ -86,6 +86,8 @@ class ThermalSolid final : public coupling::Participant {
   const SolidParameters parameters_;
   const SolidContext context_;
   std::unique_ptr<Heat> heat_;
+  std::unique_ptr<coupling::InterfaceMap> map_;  // nullptr without a thermal interface
+  std::optional<HeatInterface> interface_;
   coupling::Step step_;
   std::vector<io::Probe> probes_;
   std::optional<io::FieldWriter> fields_;

@@ -190,7 +190,6 @@ void HeatTransport<D>::solve(const HeatLevel& level, const Weights& w) {
   for (std::size_t c = 0; c < owned; ++c) t[c] = (side_[c] + dt * w.a * next_.conduction[c]) / now.volume[c];
   mesh_.cells.update_ghosts(t);
   close(now, t, next_.boundary);
-  for (const double flow : next_.flow) next_.received += dt * w.a * flow;
 }
 
 /// True if the last pass has hardly changed the temperature; else prepares the next one. Throws SolveFailure.

@@ -65,6 +65,14 @@ class HeatTransport {
   void start(State<D>& state);
   /// Computes T^{n+1} from a level. May be called again from the same level. Collective.
   void advance(const State<D>& from);
+  /// Starts a step of a coupling, of any number of sub-steps, of `duration` [s] from a level.
+  void begin(const State<D>& from, double duration);
+  /// Sets what another participant gives at the conjugate faces for the end of the coupling step, per boundary face: the
+  /// coefficient of a film [W/(m^2 K)], 0 at all other faces, and the temperature beyond it [K]. Within the step, that
+  /// temperature changes linearly. Call before advance().
+  void set_film(std::vector<double> coefficient, std::vector<double> ambient);
+  /// Mean heat that left the fluid since begin(), per boundary face [W]; with the result of the last advance().
+  std::vector<double> mean_heat() const;
   /// Makes the result of advance() the state's. Cannot fail.
   void commit(State<D>& state);
 
@@ -85,6 +93,8 @@ class HeatTransport {
   void carry(const State<D>& from, const Weights& w);
   void carry_bounded(const State<D>& from, const Weights& w);
   void add_limited(const State<D>& from, std::span<const double> excess);
+  void add_film();
+  void add_flow(double share, std::span<const double> flow);
   void set_known(const Placement<D>& at);
   void close(const Placement<D>& at, std::span<const double> temperature,
              std::vector<double>& boundary) const;
@@ -105,9 +115,15 @@ class HeatTransport {
   double capacity_, diffusivity_;  // rho c [J/(m^3 K)], a [m^2/s]
   HeatBoundary<D> boundary_;
   linalg::KrylovSolver solver_;
-  HeatExchange exchange_;     // at t^{n+1}
-  HeatLevel next_;            // level n+1; its history becomes that of level n
-  std::vector<double> side_;  // V' T^{n+1} without conduction at n+1, per local cell [K m^3]
+  HeatExchange exchange_;  // at t^{n+1}
+  HeatLevel next_;         // level n+1; its history becomes that of level n
+  struct {
+    double begin = 0, duration = 0;
+    std::vector<double> coefficient, ambient;  // at the end
+    std::vector<double> boundary, flow;        // of the level at the begin
+  } film_;                                     // of a coupling step
+  std::vector<double> conducted_, done_;  // in this sub-step and those before it, per boundary face [K m^3]
+  std::vector<double> side_;              // V' T^{n+1} without conduction at n+1, per local cell [K m^3]
   std::unique_ptr<ViscousRows> rows_;
   std::vector<double> right_, before_, vector_;  // of the system, per local cell
   std::vector<double> admittance_, known_;       // flow at a boundary face: known - admittance T_P

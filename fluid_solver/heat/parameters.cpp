@@ -13,7 +13,7 @@ namespace {
 
 /// The key of heat that a patch has.
 const char* given_key(const BoundaryParameters& b) {
-  return b.film ? "film" : b.heat_flux ? "heat-flux" : "temperature";
+  return b.film ? "film" : b.heat_flux ? "heat-flux" : b.conjugate ? "conjugate" : "temperature";
 }
 
 }  // namespace
@@ -42,14 +42,19 @@ void declare_heat_boundary(config::Section& s, BoundaryParameters& b) {
             .doc("temperature beyond the film, of x, y, z [m] and t [s]");
       },
       "with `heat`, instead of 'temperature': a film or a thin wall between the patch and its surroundings");
+  s.value("conjugate", b.conjugate)
+      .doc(
+          "with `heat`, instead of 'temperature': heat passes to the participant of the coupling that meets the fluid here "
+          "(conjugate heat transfer)");
   s.check(
       [&b] {
-        const int given = b.temperature.has_value() + b.heat_flux.has_value() + b.film.has_value();
-        if (given > 1) return "give one of 'temperature', 'heat-flux' and 'film'";
+        const int given =
+            b.temperature.has_value() + b.heat_flux.has_value() + b.film.has_value() + b.conjugate;
+        if (given > 1) return "give one of 'temperature', 'heat-flux', 'film' and 'conjugate'";
         if (given == 1 && condition_of(b).joined)
-          return "no heat is exchanged at periodic patches; remove 'temperature', 'heat-flux' or 'film'";
-        if ((b.heat_flux || b.film) && condition_of(b).passage != Passage::none)
-          return "fluid passes this patch, which may have a 'temperature' only; remove 'heat-flux' or 'film'";
+          return "no heat is exchanged at periodic patches; remove 'temperature', 'heat-flux', 'film' or 'conjugate'";
+        if ((b.heat_flux || b.film || b.conjugate) && condition_of(b).passage != Passage::none)
+          return "fluid passes this patch, which may have a 'temperature' only; remove 'heat-flux', 'film' or 'conjugate'";
         return "";
       },
       given_key(b));
@@ -100,8 +105,8 @@ void declare(config::Section& s, HeatParameters& h) {
 void declare_heat(config::Section& s, FluidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
-      "temperature of the fluid: conduction, transport by the flow, buoyancy; patches without 'temperature', 'heat-flux' or "
-      "'film' are insulated; default: not computed");
+      "temperature of the fluid: conduction, transport by the flow, buoyancy; patches without 'temperature', 'heat-flux', "
+      "'film' or 'conjugate' are insulated; default: not computed");
   const struct {
     bool applies;
     const char* message;
@@ -120,14 +125,18 @@ void declare_heat(config::Section& s, FluidParameters& p) {
         return fits ? "" : "one number per component is needed";
       },
       "heat.gravity");
-  for (const auto& [patch, b] : p.boundaries)
-    s.check(
-        [told = !p.heat && b.exchanges_heat()] {
-          return told
-                     ? "this fluid has no 'heat'; add the section, or remove 'temperature', 'heat-flux' or 'film'"
-                     : "";
-        },
-        "boundaries." + patch + "." + given_key(b));
+  const auto is_moved = [](const BoundaryParameters& b) { return b.type == BoundaryType::interface; };
+  const bool conjugate = std::ranges::any_of(p.boundaries, [](const auto& b) { return b.second.conjugate; });
+  const bool moved = std::ranges::any_of(p.boundaries, [&](const auto& b) { return is_moved(b.second); });
+  for (const auto& [patch, b] : p.boundaries) {
+    const char* problem =
+        !p.heat && b.exchanges_heat() ? "this fluid has no 'heat'; add the section, or remove the key"
+        : conjugate && moved && is_moved(b) != b.conjugate
+            ? "all patches of a fluid where it meets other participants exchange the same data; give all "
+              "those of 'type: interface' the key 'conjugate: true', and no others"
+            : "";
+    s.check([problem] { return problem; }, "boundaries." + patch + "." + given_key(b));
+  }
 }
 
 }  // namespace couplet::fluid

@@ -88,19 +88,70 @@ void HeatTransport<D>::advance(const State<D>& from) {
   next_.received = level.received;
   parameters_.convection == HeatParameters::Convection::bounded ? carry_bounded(from, w) : carry(from, w);
   for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += step_.dt * w.b * level.conduction[c];
-  for (const double flow : level.flow) next_.received += step_.dt * w.b * flow;
+  conducted_.assign(level.flow.size(), 0.0);
+  add_flow(w.b, level.flow);
   if (w.c != 0) {
     for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += step_.dt * w.c * level.conduction_old[c];
-    for (const double flow : level.flow_old) next_.received += step_.dt * w.c * flow;
+    add_flow(w.c, level.flow_old);
   }
   boundary_.set(step_.end(), now, relative, exchange_);
+  add_film();
   solve(level, w);
+  add_flow(w.a, next_.flow);
   if (!parameters_.is_buoyant()) return;
   middle_ = level.temperature;
   for (std::size_t c = 0; c < middle_.size(); ++c) middle_[c] = 0.5 * (middle_[c] + next_.temperature[c]);
   boundary_middle_ = level.boundary;
   for (std::size_t b = 0; b < boundary_middle_.size(); ++b)
     boundary_middle_[b] = 0.5 * (boundary_middle_[b] + next_.boundary[b]);
+}
+
+template <int D>
+void HeatTransport<D>::begin(const State<D>& from, double duration) {
+  film_.begin = from.time;
+  film_.duration = duration;
+  film_.boundary = from.heat.boundary;
+  film_.flow = from.heat.flow;
+  done_.assign(from.heat.flow.size(), 0.0);
+}
+
+template <int D>
+void HeatTransport<D>::set_film(std::vector<double> coefficient, std::vector<double> ambient) {
+  film_.coefficient = std::move(coefficient);
+  film_.ambient = std::move(ambient);
+}
+
+/// Adds the films of the conjugate faces at the end of the sub-step. The temperature beyond the same film at the begin of the
+/// coupling step follows from the flow there.
+template <int D>
+void HeatTransport<D>::add_film() {
+  const double share = (step_.end() - film_.begin) / film_.duration;
+  for (std::size_t b = 0; b < film_.coefficient.size(); ++b) {
+    const double h = film_.coefficient[b];
+    if (!(h > 0)) continue;
+    const double area = step_.to->area[mesh_.n_interior + Index(b)].norm();
+    const double before = film_.boundary[b] + film_.flow[b] * capacity_ / (h * area);
+    exchange_.coefficient[b] = h;
+    exchange_.ambient[b] = before + share * (film_.ambient[b] - parameters_.reference_temperature - before);
+  }
+}
+
+/// Adds the heat that this flow conducts into the fluid in a share of the sub-step.
+template <int D>
+void HeatTransport<D>::add_flow(double share, std::span<const double> flow) {
+  for (std::size_t b = 0; b < flow.size(); ++b) {
+    const double heat = step_.dt * share * flow[b];
+    conducted_[b] += heat;
+    next_.received += heat;
+  }
+}
+
+template <int D>
+std::vector<double> HeatTransport<D>::mean_heat() const {
+  std::vector<double> heat(done_.size());
+  for (std::size_t b = 0; b < heat.size(); ++b)
+    heat[b] = -capacity_ / film_.duration * (done_[b] + conducted_[b]);
+  return heat;
 }
 
 /// Convection with mean values at faces, extrapolated as a product, and the volumes that the faces sweep.
@@ -225,6 +276,7 @@ void HeatTransport<D>::add_limited(const State<D>& from, std::span<const double>
 template <int D>
 void HeatTransport<D>::commit(State<D>& s) {
   HeatLevel& h = s.heat;
+  for (std::size_t b = 0; b < done_.size(); ++b) done_[b] += conducted_[b];
   next_.temperature_old.swap(h.temperature);
   next_.flow_old.swap(h.flow);
   next_.conduction_old.swap(h.conduction);

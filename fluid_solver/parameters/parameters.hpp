@@ -88,7 +88,8 @@ struct BoundaryParameters {
   std::optional<config::ExpressionText> temperature;  // [K]
   std::optional<config::ExpressionText> heat_flux;    // [W/m^2] into the fluid
   std::optional<FilmParameters> film;
-  bool exchanges_heat() const { return temperature || heat_flux || film; }
+  bool conjugate = false;  // another participant gives a film and takes the heat
+  bool exchanges_heat() const { return temperature || heat_flux || film || conjugate; }
 };
 
 /// Coefficients of a condition in the equations of its faces, with given velocity w or pressure p_b,

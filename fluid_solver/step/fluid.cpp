@@ -117,6 +117,7 @@ template <int D>
 void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity) {
   split_ = judged_ = false;
   history_ = begin_;
+  if (heat()) heat()->begin(accepted_, dt_);
   statistics_.sub_steps = 0;
   path_.refuse_torn(points, time_ + dt_);
   pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());

@@ -5,17 +5,46 @@
 
 namespace couplet::solid {
 
+HeatInterface::HeatInterface(Heat& heat, const coupling::InterfaceMap& map) : heat_(heat), map_(map) {
+  heat_.set_interface(map.faces());
+}
+
+void HeatInterface::describe(coupling::Interface& description) {
+  using Place = coupling::Interface::Place;
+  description.takes.push_back({"heat", "W", Place::faces, 1});
+  description.gives.push_back({"film-coefficient", "W/(m^2 K)", Place::faces, 1});
+  description.gives.push_back({"ambient-temperature", "K", Place::faces, 1});
+}
+
+void HeatInterface::take(const coupling::Exchange& in) const {
+  const auto found = in.find("heat");
+  heat_.take(map_.scatter_faces(found == in.end() ? std::vector<double>{} : found->second, 1));
+}
+
+void HeatInterface::add_film(coupling::Exchange& out) const {
+  const InterfaceFilm film = heat_.film();
+  out["film-coefficient"] = map_.gather_faces(film.coefficient, 1);
+  out["ambient-temperature"] = map_.gather_faces(film.ambient, 1);
+}
+
 SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   const mesh::Mesh& mesh = body.mesh();
   const SolidParameters& parameters = body.parameters();
-  if (!body.boundaries().interface_patches().empty()) {
-    map_ = std::make_unique<coupling::InterfaceMap>(mesh, body.boundaries().interface_patches());
+  Heat* heat = body.temperature() ? body.temperature()->heat() : nullptr;
+  const bool conducts = heat && !heat->boundaries().interface_patches().empty();
+  is_loaded_ = !body.boundaries().interface_patches().empty();
+  if (is_loaded_ || conducts) {
+    map_ = std::make_unique<coupling::InterfaceMap>(
+        mesh, is_loaded_ ? body.boundaries().interface_patches() : heat->boundaries().interface_patches());
     description_ = map_->describe(body.geometry());
   }
   description_.dim = mesh.dim;
-  description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
-  description_.gives = {{"displacement", "m", coupling::Interface::Place::vertices},
-                        {"velocity", "m/s", coupling::Interface::Place::vertices}};
+  if (conducts) HeatInterface::describe(description_), heat_.emplace(*heat, *map_);
+  if (conducts && !is_loaded_) return;
+  for (const auto& datum : taken(parameters.interface_data.value_or(InterfaceData{})))
+    description_.takes.push_back(datum);
+  description_.gives.push_back({"displacement", "m", coupling::Interface::Place::vertices});
+  description_.gives.push_back({"velocity", "m/s", coupling::Interface::Place::vertices});
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_)
     throw Error(
@@ -24,19 +53,20 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   body.temperature()->set_interface(description_.face_centres, map_->faces());
 }
 
-void SolidInterface::take_temperature(const coupling::Exchange& in) const {
+void SolidInterface::take_heating(const coupling::Exchange& in) const {
+  if (heat_) return heat_->take(in);
   const auto found = in.find("temperature");
   const std::vector<double> faces = found == in.end() ? std::vector<double>{} : found->second;
   body_.temperature()->take(faces);
 }
 
 std::vector<double> SolidInterface::load(const coupling::Exchange& in) const {
-  if (!map_) return {};
+  if (!is_loaded_) return {};
   const mesh::Mesh& mesh = body_.mesh();
   const int dim = mesh.dim;
   std::vector<double> total(description_.face_centres.size() * dim, 0.0);
   for (const auto& [name, values] : in) {
-    if (name == "temperature" && takes_temperature_) continue;
+    if ((name == "temperature" && takes_temperature_) || (name == "heat" && heat_)) continue;
     if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
       throw Error("The solid received '{}', which it does not accept.", name);
     if (name == "pressure" && values.size() * dim == total.size()) {
@@ -62,6 +92,8 @@ coupling::Exchange SolidInterface::values(const SolidState& state) const {
   if (!map_) return {};
   const int dim = body_.mesh().dim;
   coupling::Exchange out;
+  if (heat_) heat_->add_film(out);
+  if (!is_loaded_) return out;
   out["displacement"] =
       map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
   out["velocity"] = map_->gather_vertices(

@@ -174,7 +174,7 @@ double EnergyBalance::rounding() const {
 
 void EnergyBalance::look(diagnostics::Report& report) {
   const SolidBody& body = view_.body;
-  if (strain_ && body.thermal()) return;
+  if (body.thermal()) return;  // heat does work that is not counted
   const SolidState& state = view_.now();
   const double kinetic = parallel::sum(view_.comm(), view_.stepper.ledger().kinetic(state));
   const double strain = strain_energy();

@@ -55,8 +55,11 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
                      "temperature of the fluid, an expression of x, y, z, t");
         }},
        {"adiabatic", Type::adiabatic, [](config::Section&) {}},
-       {"symmetry", Type::symmetry, [](config::Section&) {}}},
-      "thermal condition of the patch; a symmetry plane must be flat", true);
+       {"symmetry", Type::symmetry, [](config::Section&) {}},
+       {"interface", Type::interface, [](config::Section&) {}}},
+      "thermal condition of the patch; a symmetry plane must be flat. interface: heat passes to the participant of the coupling "
+      "that meets the solid here (conjugate heat transfer)",
+      true);
 }
 
 }  // namespace
@@ -97,6 +100,15 @@ void declare(config::Section& s, HeatParameters& h) {
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
       "patch", "patches that are not adiabatic; mechanical symmetry planes are also thermal symmetry planes");
+  s.check(
+      [&h] {
+        const bool meets = std::ranges::any_of(
+            h.boundaries, [](const auto& b) { return b.second.type == HeatBoundary::Type::interface; });
+        return meets && h.scheme == HeatParameters::Scheme::trapezoidal
+                   ? "heat that another participant gives needs 'three-point' or 'euler'"
+                   : "";
+      },
+      "time-scheme");
   s.value("tolerance", h.tolerance)
       .range(1e-14, 1e-2)
       .doc(

@@ -19,7 +19,7 @@ struct HeatMaterial {
 
 /// Thermal boundary condition on one patch.
 struct HeatBoundary {
-  enum class Type { temperature, flux, convection, adiabatic, symmetry };
+  enum class Type { temperature, flux, convection, adiabatic, symmetry, interface };
   Type type = Type::adiabatic;
   config::ExpressionText value;        // temperature [K] or heat flux into the solid [W/m^2]
   config::ExpressionText coefficient;  // of convection [W/(m^2 K)]

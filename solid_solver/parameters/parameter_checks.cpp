@@ -17,7 +17,7 @@ using Analysis = SolidParameters::Analysis;
 using Method = MethodParameters;
 
 /// Reports a setting at the key to change.
-void refuse(config::Section& s, const char* key, bool is_wrong, const std::string& why) {
+void refuse(config::Section& s, const std::string& key, bool is_wrong, const std::string& why) {
   s.check([&] { return is_wrong ? why : std::string(); }, key);
 }
 
@@ -48,6 +48,22 @@ bool derives_from_energy(const SolidParameters& p) {
 }
 
 bool has_modes(const SolidParameters& p) { return p.output.spectrum || p.output.modes > 0; }
+
+/// All patches where a solid meets other participants exchange the same data: heat and motion, or one of them.
+void refuse_unlike_interfaces(config::Section& s, const SolidParameters& p) {
+  const auto conducts = [&](const std::string& patch) {
+    const auto found = p.heat->boundaries.find(patch);
+    return found != p.heat->boundaries.end() && found->second.type == HeatBoundary::Type::interface;
+  };
+  if (!p.heat || p.analysis == SolidParameters::Analysis::thermal || !any_condition(p, is_interface) ||
+      std::ranges::none_of(p.heat->boundaries, [&](const auto& b) { return conducts(b.first); }))
+    return;
+  for (const auto& [patch, condition] : p.boundaries)
+    refuse(
+        s, "boundaries." + patch, is_interface(condition) != conducts(patch),
+        "all patches where a solid meets other participants exchange the same data; give it 'type: interface' here and in "
+        "`heat.boundaries`, or in neither");
+}
 
 }  // namespace
 
@@ -88,6 +104,7 @@ void check_heat(config::Section& s, SolidParameters& p) {
   refuse(s, "thermal-expansion", p.expansion && !p.heat && !p.temperature && !is_received,
          "thermal strain needs a temperature; add 'heat' or 'temperature'");
   refuse(s, "analysis", p.analysis == Analysis::thermal && !p.heat, "a thermal analysis needs 'heat'");
+  refuse_unlike_interfaces(s, p);
   for (const SolidMaterial& m : materials_of(p))
     for (const auto& [property, is_needed, key, by] :
          {std::tuple{&m.heat.conductivity, p.heat.has_value(), "conductivity", "'heat'"},

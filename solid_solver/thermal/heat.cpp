@@ -143,6 +143,11 @@ std::vector<double> Heat::sources(double t, std::span<const double> further) con
 
 void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   const log::ScopedTimer timer(log::timers(), "solid: heat");
+  if (step.scheme == coupling::Scheme::standalone && !boundaries_.interface_patches().empty())
+    throw Error(
+        "heat.boundaries.{}: another participant gives the heat at a thermal interface, but this program runs alone: give the "
+        "patch a temperature, a flux or convection instead.",
+        boundaries_.interface_patches().front());
   const Coefficients c = coefficients(step.dt);
   const double end = step.time + step.dt;
   trial_.time = end;
@@ -152,6 +157,7 @@ void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   trial_.boundary = state_.boundary;
   boundaries_.known(conduction_, end, trial_.known);
   boundaries_.fluxes(end, face_heat_, transfer_);
+  add_taken(c);
   if (is_steady() && !boundaries_.gives_temperature())
     require_level(parallel::max(mesh_->comm, transfer_.empty() ? 0 : std::ranges::max(transfer_)) == 0);
   const std::vector<double> in_cells = sources(end, source);
@@ -175,6 +181,60 @@ void Heat::solve(const coupling::Step& step, std::span<const double> source) {
   for (Index i = 0; i < mesh_->cells.n_owned(); ++i)
     trial_.enthalpy[i] = materials_[mesh_->cell_zone[i]].specific_heat.antiderivative(trial_.cells[i]);
   set_inflow(in_cells);
+  if (!kept) find_response(c);
+}
+
+void Heat::set_interface(const std::vector<Index>& faces) {
+  std::vector<std::size_t> entry_of(mesh_->n_faces());
+  for (std::size_t i = 0; i < conduction_.flux_faces().size(); ++i) entry_of[conduction_.flux_faces()[i]] = i;
+  for (const Index face : faces) interface_.entries.push_back(entry_of[face]);
+  state_.taken.assign(faces.size(), 0.0);
+  trial_.taken = state_.taken;
+}
+
+/// The heat Q of a step enters as the enthalpy does that it becomes: with a step of three levels, a Q^{n+1} - b Q^n. That is the
+/// heat at t^{n+1} to second order, and the solid stores all of what is given.
+void Heat::add_taken(const Coefficients& c) {
+  const double now = is_steady() ? 1 : c.next * trial_.dt, before = c.before * state_.dt;
+  interface_.enters.resize(interface_.entries.size());
+  for (std::size_t i = 0; i < interface_.enters.size(); ++i) {
+    interface_.enters[i] = now * trial_.taken[i] - before * state_.taken[i];
+    face_heat_[interface_.entries[i]] += interface_.enters[i];
+  }
+}
+
+/// Solves once for 1 W/m^2 at all interface faces and nothing else. Properties that vary do so little within a step.
+void Heat::find_response(const Coefficients& c) {
+  const bool meets = parallel::any(mesh_->comm, !interface_.entries.empty());
+  if (!meets || (interface_.time == state_.time && interface_.weight == c.next)) return;
+  interface_.time = state_.time;
+  interface_.weight = c.next;
+  std::vector<double> heat(conduction_.n_unknowns(), 0.0), change = heat;
+  const std::size_t n_owned = std::size_t(mesh_->cells.n_owned());
+  for (const std::size_t entry : interface_.entries) {
+    const Index face = conduction_.flux_faces()[entry];
+    const double area = geometry_->face_area[face].norm();
+    heat[std::size_t(mesh_->owner[face])] += c.theta * area;
+    heat[n_owned + entry] = area;
+  }
+  solver_->solve(heat, change);
+  interface_.response.clear();
+  for (const std::size_t entry : interface_.entries) {
+    const Index face = conduction_.flux_faces()[entry];
+    const double half_cell = 1 / (conduction_.faces().inverse_dn[face] * conductivity_[face]);
+    interface_.response.push_back(std::max(change[n_owned + entry], half_cell));
+  }
+}
+
+InterfaceFilm Heat::film() const {
+  InterfaceFilm film;
+  for (std::size_t i = 0; i < interface_.entries.size(); ++i) {
+    const Index face = conduction_.flux_faces()[interface_.entries[i]];
+    const double flux = interface_.enters[i] / geometry_->face_area[face].norm();
+    film.coefficient.push_back(1 / interface_.response[i]);
+    film.ambient.push_back(trial_.boundary[face - mesh_->n_interior] - flux * interface_.response[i]);
+  }
+  return film;
 }
 
 void Heat::assemble(const Coefficients& c, std::span<const double> source) {
@@ -287,6 +347,15 @@ void Heat::visit(io::Archive& archive) {
   archive.field(mesh::Entries::owned_cells, "enthalpy", state_.enthalpy, 1);
   archive.field(mesh::Entries::owned_cells, "enthalpy-before", state_.enthalpy_before, 1);
   archive.field(mesh::Entries::owned_cells, "heat-inflow", state_.inflow, 1);
+  if (!boundaries_.interface_patches().empty()) {
+    std::vector<double> taken(mesh_->boundary.n_owned(), 0);
+    for (std::size_t i = 0; i < interface_.entries.size(); ++i)
+      taken[conduction_.flux_faces()[interface_.entries[i]] - mesh_->n_interior] = state_.taken[i];
+    archive.field(mesh::Entries::owned_boundary, "interface-heat", taken, 1);
+    for (std::size_t i = 0; i < interface_.entries.size(); ++i)
+      state_.taken[i] = taken[conduction_.flux_faces()[interface_.entries[i]] - mesh_->n_interior];
+    trial_.taken = state_.taken;
+  }
   archive.common("heat-state", state_.time, state_.dt, state_.steps);
 }
 

@@ -35,6 +35,14 @@ struct HeatState {
   std::vector<double> known;                      ///< prescribed values, see ConductionOperator
   std::vector<double> enthalpy, enthalpy_before;  ///< per owned cell, at t^n and t^{n-1} [J/kg]
   std::vector<double> inflow;                     ///< per owned cell [W]; trapezoidal rule only
+  std::vector<double> taken;                      ///< mean over the step, per interface face [W]
+};
+
+/// Answer of a solid to heat at its interface, per face: k dT/dn = coefficient (ambient - T_face) + what passes beside it.
+struct InterfaceFilm {
+  std::vector<double>
+      coefficient;  ///< heat per area that warms the face by 1 K within the step, if all faces take it [W/(m^2 K)]
+  std::vector<double> ambient;  ///< temperature of the face without the heat that it took [K]
 };
 
 /// Heat flow through a patch into the solid [W].
@@ -59,6 +67,12 @@ class Heat final {
   /// empty. Throws SolveFailure. Collective.
   void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
+  /// Interface faces of owned cells, in the order of take() and film(). Call once before the first step.
+  void set_interface(const std::vector<Index>& faces);
+  /// Sets the mean heat [W] that enters each interface face in the next step to solve.
+  void take(std::vector<double> heat) { trial_.taken = std::move(heat); }
+  /// After solve(). Collective.
+  InterfaceFilm film() const;
   /// Saves or loads the accepted state. Collective.
   void visit(io::Archive& archive);
 
@@ -110,6 +124,8 @@ class Heat final {
   double take_solution();
   void take(std::span<const double> unknowns, HeatState& state) const;
   void set_inflow(std::span<const double> source);
+  void add_taken(const Coefficients& c);
+  void find_response(const Coefficients& c);
 
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
@@ -125,6 +141,12 @@ class Heat final {
   linalg::SparseMatrix matrix_;
   std::unique_ptr<linalg::LinearSolver> solver_;
   double filled_for_ = -1;  // a_0/dt of the present matrix; -1 if none
+  struct {
+    std::vector<std::size_t> entries;  // of the faces in flux_faces()
+    std::vector<double> enters;        // heat at the end of the step [W]
+    std::vector<double> response;      // change of T by 1 W/m^2 at all of them [K m^2/W]
+    double time = 0, weight = -1;      // start of the step and a_0/dt of the response
+  } interface_;
 };
 
 }  // namespace couplet::solid

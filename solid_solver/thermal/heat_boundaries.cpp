@@ -37,6 +37,7 @@ HeatBoundaries::HeatBoundaries(const mesh::Mesh& mesh, const mesh::Geometry& geo
       const HeatBoundary& b = found->second;
       const std::string where = "heat.boundaries." + name;
       here.type = b.type;
+      if (b.type == Kind::interface) interface_patches_.push_back(name);
       if (b.type == Kind::temperature || b.type == Kind::flux)
         here.value = fv::Expression(b.value, where + ".value");
       if (b.type == Kind::convection) {

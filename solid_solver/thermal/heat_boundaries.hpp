@@ -23,6 +23,8 @@ class HeatBoundaries final {
   /// Returns true if a patch has a given temperature.
   bool gives_temperature() const;
   bool any_transfer() const;
+  /// Patches where another participant gives the heat.
+  const std::vector<std::string>& interface_patches() const { return interface_patches_; }
   bool transfer_uses_time() const;
 
   /// Prescribed temperatures at time t, in the order of the operator's known columns.
@@ -45,6 +47,7 @@ class HeatBoundaries final {
   const mesh::Mesh* mesh_;
   const mesh::Geometry* geometry_;
   std::vector<OnPatch> on_patch_;
+  std::vector<std::string> interface_patches_;
   std::vector<fv::HeatCondition> conditions_;
 };
 

@@ -46,6 +46,7 @@ class TemperatureField {
   }
   /// nullptr unless it is solved for.
   const Heat* heat() const { return heat_.get(); }
+  Heat* heat() { return heat_.get(); }
   /// Temperature of all local points at the accepted time. Collective.
   std::vector<double> of_points() const { return at(points, time_, false); }
   /// Likewise of all local cells, and at the end of the step.
