@@ -70,6 +70,11 @@ std::string Coupler::run() {
     record_->monitor().step(step, time, last_, pass_.partners());
   };
   actions.advised_dt = [&] { return advised_dt(pass_.everyone()); };
+  actions.change = [&] {
+    double most = coupling::StepReport::unknown;
+    for (const Partner* p : pass_.everyone()) most = std::fmax(most, p->report.change);
+    return most;
+  };
   std::string problem = loop_.run(actions);
   finalise(problem);
   return problem;

@@ -14,6 +14,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "common/time/steadiness.hpp"
 #include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/state/state.hpp"
@@ -404,6 +405,21 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   return {.dt = step_.dt,
           .iterations = effort() - before,
           .energy = only_conducts ? coupling::StepReport::unknown : energy};
+}
+
+/// Larger of that of the velocity and that of the temperature, over its range.
+template <int D>
+double FluidParticipant<D>::change() const {
+  const State<D>& s = fluid_->state();
+  if (s.u_old.empty()) return coupling::StepReport::unknown;
+  const std::size_t owned = std::size_t(mesh_.cells.n_owned());
+  double most = 0;
+  if (!fluid_->heat() || !fluid_->heat()->freezes_flow(step_.time))
+    most = time::change_over_size(mesh_.comm, flat<D>(s.u).first(owned * D), flat<D>(s.u_old));
+  if (s.heat.is_solved)
+    most = std::max(most, time::change_over_range(mesh_.comm, std::span(s.heat.temperature).first(owned),
+                                                  s.heat.temperature_old));
+  return most;
 }
 
 template <int D>

@@ -45,6 +45,7 @@ class FluidParticipant final : public coupling::Participant {
   coupling::Exchange solve(const coupling::Exchange& in) override;
   bool renewed_prediction() const override { return renewed_now_; }
   coupling::StepReport accept_step() override;
+  double change() const override;
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;

@@ -13,6 +13,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/probes/place_search.hpp"
 #include "common/io/probes/probe.hpp"
+#include "common/time/steadiness.hpp"
 #include "solid_solver/analysis/modal_analysis.hpp"
 #include "solid_solver/output/quantities.hpp"
 #include "solid_solver/thermal/thermal_load.hpp"
@@ -62,6 +63,14 @@ coupling::StepReport Solid::accept_step() {
     motion.note(largest);
   }
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};
+}
+
+double Solid::change() const {
+  const std::size_t owned = std::size_t(body_.mesh().cells.n_owned() * body_.mesh().dim);
+  const double moved = time::change_over_size(
+      body_.mesh().comm, std::span(stepper_.state().cell_u).first(owned), stepper_.trial().cell_u);
+  const Heat* heat = body_.temperature() ? body_.temperature()->heat() : nullptr;
+  return heat ? std::max(moved, heat->change()) : moved;
 }
 
 std::vector<std::string> Solid::finish() {

@@ -31,6 +31,7 @@ class Solid final : public coupling::Participant {
   void begin_step(const coupling::Step& step) override;
   coupling::Exchange solve(const coupling::Exchange& in) override;
   coupling::StepReport accept_step() override;
+  double change() const override;
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;
@@ -69,6 +70,7 @@ class ThermalSolid final : public coupling::Participant {
     heat_->accept_step();
     return {.dt = step_.dt};
   }
+  double change() const override { return heat_->change(); }
   void save(io::CheckpointWriter& file) const override;
   void load(io::CheckpointReader& file) override;
   void write_output(double time, int number) override;

@@ -95,8 +95,12 @@ class Bookkeeping {
 /// Participant with its diagnostics, which observe each accepted step and save their memory with its state.
 class Observed final : public coupling::Participant {
  public:
-  Observed(coupling::Participant& inner, diagnostics::Diagnostics& diagnostics, const Diagnose& diagnose)
-      : inner_(inner), diagnostics_(diagnostics), diagnose_(diagnose) {}
+  Observed(coupling::Participant& inner, diagnostics::Diagnostics& diagnostics, const Diagnose& diagnose,
+           const SimulationParameters& simulation)
+      : inner_(inner),
+        diagnostics_(diagnostics),
+        diagnose_(diagnose),
+        looks_for_rest_(simulation.until_steady.has_value()) {}
   coupling::Interface initialise() override {
     coupling::Interface interface = inner_.initialise();
     if (diagnose_) diagnose_(inner_, diagnostics_);
@@ -110,7 +114,8 @@ class Observed final : public coupling::Participant {
   coupling::Exchange solve(const coupling::Exchange& in) override { return inner_.solve(in); }
   bool renewed_prediction() const override { return inner_.renewed_prediction(); }
   coupling::StepReport accept_step() override {
-    const coupling::StepReport report = inner_.accept_step();
+    coupling::StepReport report = inner_.accept_step();
+    if (looks_for_rest_) report.change = inner_.change();
     if (!std::isnan(report.energy)) {
       fv::Use& energy = fv::uses()["energy"];
       energy.kind = fv::Use::Kind::energy;
@@ -140,6 +145,7 @@ class Observed final : public coupling::Participant {
   coupling::Participant& inner_;
   diagnostics::Diagnostics& diagnostics_;
   const Diagnose& diagnose_;
+  const bool looks_for_rest_;
   double end_ = 0;  // of the current step [s]
 };
 
@@ -262,7 +268,7 @@ int run_alone(const Job& job, coupling::Participant& participant, const Diagnose
   RunReport run(job);
   diagnostics::Diagnostics diagnostics(job.rank, job.simulation.diagnostics);
   diagnostics.add("use-of-case", use_of_case(job.comm));
-  Observed observed(participant, diagnostics, diagnose);
+  Observed observed(participant, diagnostics, diagnose, job.simulation);
   OwnCommands command(job, observed, run);
   StepLoop loop(job.comm, job.simulation, coupling::Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
@@ -286,6 +292,7 @@ int run_alone(const Job& job, coupling::Participant& participant, const Diagnose
   };
   actions.report = [&](const coupling::Step& step, double time) { console.step(step, time); };
   actions.advised_dt = [&] { return command.advised_dt(); };
+  actions.change = [&] { return command.report().change; };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
   closing_words(job, participant, diagnostics, {.has_failed = !problem.empty()}, console.seconds(),
@@ -303,7 +310,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, coupling::Participant& partici
   RunReport run(job);
   diagnostics::Diagnostics diagnostics(job.rank, job.simulation.diagnostics);
   diagnostics.add("use-of-case", use_of_case(job.comm));
-  Observed observed(participant, diagnostics, diagnose);
+  Observed observed(participant, diagnostics, diagnose, job.simulation);
   Bookkeeping books(job, run);
   coupling::ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };

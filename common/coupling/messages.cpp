@@ -112,6 +112,7 @@ std::vector<char> pack(const Reply& r, const Partition& cut) {
   out.put(std::int64_t(r.report.iterations));
   out.put(r.report.error);
   out.put(r.report.energy);
+  out.put(r.report.change);
   out.put(r.data);
   out.put(std::int64_t(r.interface.dim));
   out.put(std::int64_t(r.renewed));
@@ -150,6 +151,7 @@ Reply unpack_reply(std::span<const char> bytes, Partition& cut) {
   r.report.iterations = long(in.integer(0, largest_integer, "the number of iterations"));
   r.report.error = in.real();
   r.report.energy = in.real();
+  r.report.change = in.real();
   r.data = in.exchange();
   r.interface.dim = int(in.integer(2, 3, "the dimension"));
   r.renewed = in.integer(0, 1, "the flag for a recomputed reply") != 0;

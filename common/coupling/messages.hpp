@@ -141,7 +141,7 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
 std::vector<char> cut_out(const Interface& interface, const Slice& slice);
 void put_back(std::span<const char> bytes, Interface& interface, std::vector<int>& surface_of_vertex);
 
-inline constexpr std::int64_t protocol_version = 7;
+inline constexpr std::int64_t protocol_version = 8;
 inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104, output_tag = 105;
 
 inline constexpr std::int64_t largest_integer = std::numeric_limits<std::int64_t>::max();

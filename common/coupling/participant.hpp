@@ -71,6 +71,7 @@ struct StepReport {
   long iterations = 0;      ///< of linear solvers in the accepted solve()
   double error = unknown;   ///< estimated time error of the step, relative to the size of the solution [1]
   double energy = unknown;  ///< of the accepted state [J]
+  double change = unknown;  ///< see Participant::change()
   /// Since the last accepted step, failed attempts included; filled in by who drives the run.
   double seconds = 0;
 };
@@ -96,6 +97,9 @@ class Participant {
   virtual bool renewed_prediction() const { return false; }
   /// Accepts the step. Must not fail: everything that can fail belongs in solve().
   virtual StepReport accept_step() = 0;
+  /// Change of the solution in the last accepted step relative to its size [1]; NaN if it has no answer. Called only in runs that
+  /// look for a steady state. Collective.
+  virtual double change() const { return StepReport::unknown; }
   virtual void save(io::CheckpointWriter& file) const = 0;
   virtual void load(io::CheckpointReader& file) = 0;
   /// Writes fields at this accepted time when output is due. `number` counts outputs from 0.

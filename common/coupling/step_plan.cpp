@@ -206,6 +206,7 @@ StepReport SubStepping::accept_step() {
   if (steps_ == 1) return report;
   report.dt = step_.dt;
   report.iterations += iterations_;
+  report.change *= steps_;
   before_ = std::move(given_);
   has_start_ = moved_on_ = false;
   return report;

@@ -15,7 +15,7 @@ constexpr const char* checkpoint_format = "couplet checkpoint";
 // that a coupling chose. 7: the memory of diagnostics. 9: no checksums beside the digests of the set.
 // 10: single values are arrays. 11: the largest speed of a flow. 12: what the filter of the pressure took; until 13.
 // 15: pressures of lumped ends.
-constexpr int checkpoint_version = 15;
+constexpr int checkpoint_version = 16;
 
 // arrays/NAME with layout/NAME: values rank by rank; count of each rank.
 // fields/NAME with checks/NAME: rows by the entries' numbers; rows, values per row.

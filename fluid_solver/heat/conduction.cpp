@@ -104,7 +104,7 @@ void HeatTransport<D>::set_gradient(const Placement<D>& at, std::span<const doub
   mesh_.cells.update_ghosts(flat<D>(gradient_), D);
 }
 
-/// A x = V' x + beta sum g (x_P - x_N), with the admittance of the boundary.
+/// A x = V' x + beta sum g (x_P - x_N), with the admittance of the boundary, and the mean of x carried at t^{n+1}.
 template <int D>
 void HeatTransport<D>::set_rows() {
   const Placement<D>& at = *step_.to;
@@ -114,12 +114,17 @@ void HeatTransport<D>::set_rows() {
   std::size_t e = 0;
   for (Index c = 0; c < a.size(); ++c)
     for (const std::size_t end = e + std::size_t(a.width); e < end; ++e) {
-      const double entry = a.face[e] < 0 ? 0 : beta_ * at.conductance[a.face[e]];
-      a.value[e] = -entry;
-      a.diagonal[c] += entry;
+      const Index f = a.face[e];
+      const double entry = f < 0 ? 0 : beta_ * at.conductance[f];
+      const double out = f < 0 || carried_.empty() ? 0 : mesh_.owner[f] == c ? carried_[f] : -carried_[f];
+      a.value[e] = 0.5 * out - entry;
+      a.diagonal[c] += 0.5 * out + entry;
     }
   for (std::size_t b = 0; b < admittance_.size(); ++b)
     a.diagonal[mesh_.owner[mesh_.n_interior + Index(b)]] += beta_ / diffusivity_ * admittance_[b];
+  for (std::size_t b = 0; !carried_.empty() && b < admittance_.size(); ++b)
+    if (const Index f = mesh_.n_interior + Index(b); !std::isinf(exchange_.coefficient[b]))
+      a.diagonal[mesh_.owner[f]] += carried_[f];
 }
 
 template <int D>
@@ -144,6 +149,9 @@ void HeatTransport<D>::set_right_side() {
   const double factor = beta_ / diffusivity_;
   for (std::size_t b = 0; b < known_.size(); ++b)
     right_[mesh_.owner[mesh_.n_interior + Index(b)]] += factor * known_[b];
+  for (std::size_t b = 0; !carried_.empty() && b < known_.size(); ++b)
+    if (const Index f = mesh_.n_interior + Index(b); std::isinf(exchange_.coefficient[b]))
+      right_[mesh_.owner[f]] -= carried_[f] * exchange_.ambient[b];
   if (gradient_.empty() || at.oblique.empty()) return;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
@@ -181,12 +189,13 @@ void HeatTransport<D>::solve(const HeatLevel& level, const Weights& w) {
     solver_.solve(std::span(right_).first(owned), std::span(t).first(owned),
                   {.relative_tolerance = heat_tolerance,
                    .max_iterations = most_heat_iterations,
-                   .is_symmetric = true,
+                   .is_symmetric = carried_.empty(),
                    .carried = most_heat_iterations});
     mesh_.cells.update_ghosts(t);
     if (!scene_.oblique || has_settled(pass)) break;
   }
   conduct(now, t, next_);
+  if (!carried_.empty()) carry_implicitly();
   for (std::size_t c = 0; c < owned; ++c) t[c] = (side_[c] + dt * w.a * next_.conduction[c]) / now.volume[c];
   mesh_.cells.update_ghosts(t);
   close(now, t, next_.boundary);

@@ -55,7 +55,8 @@ class HeatBoundary {
 /// It is second order in space and time on moving meshes, conserves the sum of V T to round-off, and keeps a uniform T where the
 /// fluxes of each cell sum to zero. Convection is treated as that of the velocity: T_f is the mean of the cells, and the
 /// product phi T_f is extrapolated to the middle of the step. Conduction always has the weights of implicit friction, 9/16, 3/8
-/// and 1/16 at equal steps. The temperature of a step does not depend on the pressure and is computed first.
+/// and 1/16 at equal steps. The temperature of a step does not depend on the pressure and is computed first. Where the flow takes steps
+/// beyond a Courant number of 1 or is frozen, convection has these weights, too, with phi extrapolated to t^{n+1}.
 template <int D>
 class HeatTransport {
  public:
@@ -79,6 +80,10 @@ class HeatTransport {
   /// T at t^{n+1/2} per local cell, and at the boundary faces, both less the reference temperature [K].
   const std::vector<double>& middle() const { return middle_; }
   const std::vector<double>& boundary_middle() const { return boundary_middle_; }
+  /// True if the flow stays as it is from this time on.
+  bool freezes_flow(double time) const {
+    return parameters_.frozen_flow && time >= *parameters_.frozen_flow * (1 - 1e-12);
+  }
   /// Largest frequency of internal waves of a stratified fluid, (-beta g . grad T)^(1/2) [1/s]. In a fluid at rest, any buoyancy
   /// between neighbors counts, because it will set the fluid in motion. Collective.
   double buoyancy_rate(const State<D>& state) const;
@@ -90,7 +95,9 @@ class HeatTransport {
   };
   Weights weights() const;
   std::vector<double> through(const State<D>& state) const;
+  void set_carried(const State<D>& from, const Weights& w);
   void carry(const State<D>& from, const Weights& w);
+  void carry_implicitly();
   void carry_bounded(const State<D>& from, const Weights& w);
   void add_limited(const State<D>& from, std::span<const double> excess);
   void add_film();
@@ -122,6 +129,8 @@ class HeatTransport {
     std::vector<double> coefficient, ambient;  // at the end
     std::vector<double> boundary, flow;        // of the level at the begin
   } film_;                                     // of a coupling step
+  std::vector<double>
+      carried_;  // volume that carries T^{n+1}, per flux face [m^3]; empty if that is explicit
   std::vector<double> conducted_, done_;  // in this sub-step and those before it, per boundary face [K m^3]
   std::vector<double> side_;              // V' T^{n+1} without conduction at n+1, per local cell [K m^3]
   std::unique_ptr<ViscousRows> rows_;

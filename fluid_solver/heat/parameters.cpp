@@ -94,6 +94,21 @@ void declare(config::Section& s, HeatParameters& h) {
       .doc(
           "central: as for the velocity. bounded: limited such that convection makes no new extremes, for fronts that the "
           "mesh does not resolve");
+  s.value("frozen-flow", h.frozen_flow)
+      .unit("s", 1e-10, 1e11)
+      .not_negative()
+      .doc(
+          "time from which the flow stays as it is and only the temperature is computed, with steps of any size; for heat that "
+          "spreads much more slowly than the flow. Default: never");
+  s.check(
+      [&h] {
+        if (h.frozen_flow && !h.gravity.empty())
+          return "buoyancy changes the flow with the temperature; remove one of the two";
+        return h.frozen_flow && h.convection == Convection::bounded
+                   ? "it carries the temperature with central values; remove 'convection'"
+                   : "";
+      },
+      "frozen-flow");
   s.check([&h] { return h.gravity.empty() || h.expansion != 0 ? "" : "buoyancy needs 'expansion'"; },
           "gravity");
   s.check([&h] { return h.expansion == 0 || !h.gravity.empty() ? "" : "it has no effect without 'gravity'"; },
@@ -114,9 +129,17 @@ void declare_heat(config::Section& s, FluidParameters& p) {
       {p.is_compressible(),
        "not supported together with pressure waves; remove 'compressibility', or set 'scheme: none'"},
       {!p.bodies.empty(), "not supported together with immersed bodies; remove 'bodies'"},
+      {p.heat && p.heat->frozen_flow &&
+           (p.motion || std::ranges::any_of(p.boundaries,
+                                            [](const auto& b) {
+                                              return b.second.type == BoundaryType::interface ||
+                                                     b.second.type == BoundaryType::body;
+                                            })),
+       "walls that move the fluid keep it flowing; remove 'frozen-flow'"},
       {!p.gaps.empty(), "not supported together with gaps that close; remove 'gaps'"},
       {p.turbulence.has_value(), "the heat of eddies is not modeled; remove 'turbulence'"},
-      {p.courant.has_value(), "the temperature is carried explicitly; remove 'courant'"}};
+      {p.courant && p.heat && p.heat->convection == HeatParameters::Convection::bounded,
+       "bounded convection is explicit; remove 'courant', or 'convection' here"}};
   for (const auto& [applies, message] : refused)
     s.check([told = p.heat && applies ? message : ""] { return told; }, "heat");
   s.check(

@@ -86,6 +86,7 @@ void HeatTransport<D>::advance(const State<D>& from) {
   side_.resize(level.temperature.size());
   for (std::size_t c = 0; c < side_.size(); ++c) side_[c] = old.volume[c] * level.temperature[c];
   next_.received = level.received;
+  set_carried(from, w);
   parameters_.convection == HeatParameters::Convection::bounded ? carry_bounded(from, w) : carry(from, w);
   for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += step_.dt * w.b * level.conduction[c];
   conducted_.assign(level.flow.size(), 0.0);
@@ -154,10 +155,42 @@ std::vector<double> HeatTransport<D>::mean_heat() const {
   return heat;
 }
 
+/// phi at t^{n+1} follows from two levels, each of which fills no cell.
+template <int D>
+void HeatTransport<D>::set_carried(const State<D>& from, const Weights& w) {
+  carried_.clear();
+  const bool frozen = freezes_flow(step_.begin());
+  if (!frozen && !scene_.parameters.courant) return;
+  const double ahead = frozen || from.phi_old.empty() ? 0 : step_.ratio();
+  carried_.resize(from.phi.size());
+  for (std::size_t f = 0; f < carried_.size(); ++f)
+    carried_[f] =
+        step_.dt * w.a * (ahead > 0 ? (1 + ahead) * from.phi[f] - ahead * from.phi_old[f] : from.phi[f]);
+}
+
+/// Carries the temperature at t^{n+1}.
+template <int D>
+void HeatTransport<D>::carry_implicitly() {
+  const std::vector<double>& t = next_.temperature;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double out = 0.5 * carried_[f] * (t[p] + t[n]);
+    side_[p] -= out;
+    side_[n] += out;
+  }
+  for (std::size_t b = 0; b < known_.size(); ++b) {
+    const Index f = mesh_.n_interior + Index(b), p = mesh_.owner[f];
+    const double out = carried_[f] * (std::isinf(exchange_.coefficient[b]) ? exchange_.ambient[b] : t[p]);
+    side_[p] -= out;
+    next_.received -= out;
+  }
+}
+
 /// Convection with mean values at faces, extrapolated as a product, and the volumes that the faces sweep.
 template <int D>
 void HeatTransport<D>::carry(const State<D>& from, const Weights& w) {
   const HeatLevel& level = from.heat;
+  const double now = carried_.empty() ? w.e0 : w.b, before = carried_.empty() ? w.e1 : w.c;
   const std::vector<double>& t = level.temperature;
   const double dt = step_.dt;
   std::vector<double>& rate = next_.convection_old;
@@ -168,9 +201,9 @@ void HeatTransport<D>::carry(const State<D>& from, const Weights& w) {
     rate[p] -= out;
     rate[n] += out;
   }
-  for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += dt * w.e0 * rate[c];
-  if (w.e1 != 0)
-    for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += dt * w.e1 * level.convection_old[c];
+  for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += dt * now * rate[c];
+  if (before != 0)
+    for (std::size_t c = 0; c < side_.size(); ++c) side_[c] += dt * before * level.convection_old[c];
   if (step_.moving())
     for (Index f = 0; f < mesh_.n_interior; ++f) {
       const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
@@ -184,8 +217,8 @@ void HeatTransport<D>::carry(const State<D>& from, const Weights& w) {
     const Index f = mesh_.n_interior + Index(b);
     const double value = next_.boundary_old[b];
     next_.carried_old[b] = from.phi[f] * value;
-    double out = dt * w.e0 * next_.carried_old[b];
-    if (w.e1 != 0) out += dt * w.e1 * level.carried_old[b];
+    double out = dt * now * next_.carried_old[b];
+    if (before != 0) out += dt * before * level.carried_old[b];
     if (step_.moving())
       out -= step_.swept[f] * (w.e0 * value + (w.e1 != 0 ? w.e1 * level.boundary_old[b] : 0.0));
     side_[mesh_.owner[f]] -= out;

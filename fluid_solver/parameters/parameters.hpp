@@ -258,6 +258,7 @@ struct HeatParameters {
   std::vector<double> gravity;                           // [m/s^2]; empty without buoyancy
   double reference_temperature = 293.15;                 // [K]
   config::ExpressionText initial_temperature{"293.15"};  // [K], of x, y, z
+  std::optional<double> frozen_flow;                     // [s]
   bool is_buoyant() const { return expansion != 0 && !gravity.empty(); }
 };
 

@@ -48,12 +48,14 @@ void Fluid<D>::begin_step(double time, double dt) {
   split_ = false;
   begin_ = accepted_;
   begin_.time = time;
+  frozen_ = heat() && heat()->freezes_flow(time);
+  statistics_.sub_steps = frozen_ ? 1 : 0;
+  if (frozen_) return;
   double rate = 0;
   for (const auto& force : step_.scene().forces) rate = std::max(rate, force->rate(time, dt));
   if (const auto* heat = step_.heat()) rate = std::max(rate, heat->buoyancy_rate(accepted_));
   const std::optional<State<D>> moved = moved_by_boundaries();
   sizes_.begin_step(moved ? *moved : accepted_, time, dt, rate, moved.has_value(), begin_);
-  statistics_.sub_steps = 0;
 }
 
 /// A fluid that no step has moved, as fast as its boundaries at the end of this one, for the size of its sub-steps; nothing
@@ -118,6 +120,8 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
   split_ = judged_ = false;
   history_ = begin_;
   if (heat()) heat()->begin(accepted_, dt_);
+  if (frozen_)
+    return step_.predict_heat(accepted_, history_, path_.sub_step(accepted_, dt_, 1, {}, {}, time_));
   statistics_.sub_steps = 0;
   path_.refuse_torn(points, time_ + dt_);
   pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());
@@ -159,6 +163,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
 
 template <int D>
 void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
+  if (frozen_) return;
   if (!wall_velocity.empty())
     for (std::size_t b = 0; b < last_w_.size(); ++b)
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
@@ -180,6 +185,7 @@ void Fluid<D>::solve(std::span<const Vec3> points, const Vectors<D>& wall_veloci
 
 template <int D>
 void Fluid<D>::accept() {
+  if (frozen_) return step_.commit_heat(accepted_);
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
   set_turn_of(accepted_, turn_);  // of the new level, which commit() reads

@@ -154,6 +154,7 @@ class Fluid {
   FlowHistory<D> begin_;    // how the current step sees level n
   State<D> trial_;          // after the last finished sub-step of the current step
   FlowHistory<D> history_;  // how the current sub-step sees level()
+  bool frozen_ = false;     // the current step only computes the temperature
   bool split_ = false;      // a sub-step of the current step is finished; the next starts from trial_
   bool rejected_ = false;   // a longer step from here was rejected: what led to it is no measure of the flow
   bool judged_ = false;     // the current prediction has given a valid level n+1

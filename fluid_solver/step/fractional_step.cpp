@@ -134,6 +134,19 @@ void FractionalStep<D>::predict(const State<D>& from, const FlowHistory<D>& by, 
 }
 
 template <int D>
+void FractionalStep<D>::predict_heat(const State<D>& from, const FlowHistory<D>& by, SubStep<D> step) {
+  step_ = {std::move(step), by};
+  heat_->advance(from);
+}
+
+template <int D>
+void FractionalStep<D>::commit_heat(State<D>& s) {
+  heat_->commit(s);
+  s.time = step_.end();
+  s.dt_old = step_.dt;
+}
+
+template <int D>
 void FractionalStep<D>::predict_from_guess(const State<D>& from) {
   Vectors<D> turned, at_boundary = from.u_boundary;
   if (scene_.parameters.rotating_frame) {

@@ -90,6 +90,9 @@ class FractionalStep {
   }
   /// nullptr if the temperature is not computed.
   HeatTransport<D>* heat() const { return heat_.get(); }
+  /// A step of the temperature alone, on a mesh at rest.
+  void predict_heat(const State<D>& from, const FlowHistory<D>& by, SubStep<D> step);
+  void commit_heat(State<D>& s);
   const MomentumTerms<D>& momentum_terms() { return predictor_.rate_operator().terms(); }
   /// nullptr if there are none.
   const ImmersedBodies<D>* bodies() const { return bodies_; }

@@ -10,6 +10,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
+#include "common/time/steadiness.hpp"
 
 namespace couplet::solid {
 namespace {
@@ -330,6 +331,11 @@ void Heat::set_inflow(std::span<const double> source) {
 }
 
 void Heat::accept_step() { std::swap(state_, trial_); }
+
+double Heat::change() const {
+  return time::change_over_range(
+      mesh_->comm, std::span(state_.cells).first(std::size_t(mesh_->cells.n_owned())), trial_.cells);
+}
 
 void Heat::visit(io::Archive& archive) {
   archive.field(mesh::Entries::cells, "cell-temperature", state_.cells, 1);

@@ -67,6 +67,8 @@ class Heat final {
   /// empty. Throws SolveFailure. Collective.
   void solve(const coupling::Step& step, std::span<const double> source = {});
   void accept_step();
+  /// Change of the temperature in the last accepted step over its range. Collective.
+  double change() const;
   /// Interface faces of owned cells, in the order of take() and film(). Call once before the first step.
   void set_interface(const std::vector<Index>& faces);
   /// Sets the mean heat [W] that enters each interface face in the next step to solve.

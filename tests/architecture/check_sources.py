@@ -26,12 +26,12 @@ ALLOWED = {
     "mesh": ["parallel", "config", "csv", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
-    "time": ["config", "base"],
+    "time": ["parallel", "config", "base"],
     "contact": ["fv", "config", "base"],
     "io": ["diagnostics", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
-    "app": ["diagnostics", "coupling", "io", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
+    "app": ["diagnostics", "coupling", "time", "io", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.

@@ -86,7 +86,7 @@ void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
 }
 
 void visit(io::Archive archive, RunState& state) {
-  archive.common("run", state.time, state.outputs, state.plan);
+  archive.common("run", state.time, state.outputs, state.plan, state.steadiness);
 }
 
 }  // namespace
@@ -147,6 +147,7 @@ void StepLoop::restart(const RunState& state, const fs::path& from) {
     }
   plan_.restore(state.plan, state.time);
   outputs_ = state.outputs;
+  steadiness_ = state.steadiness;
   restarted_ = true;
 }
 
@@ -159,6 +160,23 @@ bool StepLoop::due(double interval) const {
     return std::floor((t + rounding) / interval);
   };
   return multiples(plan_.time()) > multiples(plan_.time() - simulation_.time_step);
+}
+
+bool StepLoop::is_steady(double change, double dt) {
+  if (!simulation_.until_steady || std::isnan(change)) return false;
+  steadiness_.add(change, dt);
+  const double left = steadiness_.left();
+  const bool reached = parallel::any(comm_, left <= *simulation_.until_steady);
+  if (parallel::comm_rank(comm_) == 0 && (reached || plan_.finished()))
+    reached
+        ? log::info(
+              "t = {:g} s: steady; what is left of the way there is estimated as {:.2g} of the solution",
+              plan_.time(), left)
+        : log::warn(
+              "t = {:g} s: not steady yet ('until-steady: {:g}'): what is left of the way there is estimated as {:.2g} of the "
+              "solution",
+              plan_.time(), *simulation_.until_steady, left);
+  return reached;
 }
 
 bool StepLoop::is_own(const io::FoundSet& set) const {
@@ -174,7 +192,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
   parallel::broadcast(comm_, name);
   const fs::path folder = name;
   actions.save(folder);
-  write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
+  write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state(), steadiness_});
   on_first_rank(comm_, [&] {
     base::write_file(folder / "keys.txt", simulation_.keys, true);
     io::finish_checkpoint_set(folder, stamp, continues_);
@@ -265,7 +283,11 @@ std::string StepLoop::run(const StepActions& actions) {
     actions.accept(plan_.time(), output ? outputs_++ : -1);
     is_written_ = output;
     actions.report(step, plan_.time());
-    if (plan_.at_nominal_time() && due(simulation_.checkpoint_interval)) checkpoint(actions);
+    const bool steady = is_steady(actions.change(), step.dt);
+    if (steady || (plan_.at_nominal_time() && due(simulation_.checkpoint_interval))) checkpoint(actions);
+    if (!steady) continue;
+    if (!is_written_) actions.write_stop(plan_.time(), outputs_);
+    break;
   }
   return "";
 }

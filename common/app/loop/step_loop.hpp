@@ -19,6 +19,7 @@
 #include "common/diagnostics/diagnostics.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/io/fields/mesh_part.hpp"
+#include "common/time/steadiness.hpp"
 
 namespace couplet::app {
 
@@ -30,6 +31,7 @@ struct SimulationParameters {
   std::vector<std::string> accept;     // ids of findings that do not cause exit code 4
   double neglected_share = 0.05;       // of the result, from which a neglected effect matters
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
+  std::optional<double> until_steady;  // estimated relative distance from the steady state that ends the run
   double output_interval = 0;          // [s]; 0 means only at the start and at the end
   bool output_steps = true;            // steps.csv
   io::FieldChoice fields;              // volume fields
@@ -71,6 +73,7 @@ struct RunState {
   double time = 0;
   int outputs = 0;  ///< number of outputs written
   std::array<double, 6> plan{};
+  time::Steadiness steadiness{};
 };
 inline constexpr const char* run_file = "run.h5";  ///< in a checkpoint
 /// Rank 0 writes the state (collective). Each rank reads it by itself.
@@ -107,6 +110,8 @@ struct StepActions {
   std::function<void(const coupling::Step&, double time)> report;
   /// Largest currently recommended step [s].
   std::function<double()> advised_dt = [] { return std::numeric_limits<double>::infinity(); };
+  /// Largest relative change of a program in the last accepted step, with `until-steady`; NaN if none tells.
+  std::function<double()> change = [] { return coupling::StepReport::unknown; };
 };
 
 /// Advances from the start (or the checkpoint) to the end: halves failed steps, and writes outputs and
@@ -129,6 +134,8 @@ class StepLoop {
 
  private:
   bool due(double interval) const;
+  /// True if the accepted step has brought the run close enough to a steady state. Collective.
+  bool is_steady(double change, double dt);
   StepFailure seen_again(const StepFailure& failure, double dt);
   /// Writes a checkpoint and returns its folder.
   std::filesystem::path checkpoint(const StepActions& actions);
@@ -144,6 +151,7 @@ class StepLoop {
   std::filesystem::path checkpoints_;
   std::string run_id_;  // on rank 0
   coupling::StepPlan plan_;
+  time::Steadiness steadiness_;
   HalvingCauses causes_;
   std::pair<double, std::string> first_failure_;  // of the current step: dt [s] and reason; empty if none
   std::vector<std::string> continues_;            // ids of the earlier runs
