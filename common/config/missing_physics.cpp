@@ -42,8 +42,8 @@ constexpr MissingPhysics table[] = {
      "no wall functions; Smagorinsky and WALE need a mesh that resolves the wall; no RANS models",
      "refine at the walls until y+ is about 1, or use another fluid solver"},
     {fluid, "conjugate-heat-transfer cht conjugate heat-interface",
-     "no conjugate heat transfer between Couplet's own fluid and a solid",
-     "give the walls a film, or couple an external program that solves the heat, as in warm-flap"},
+     "no radiation or contact resistance between a fluid and a solid, and no heat between them and a tank",
+     "set conjugate: true in the fluid and type: interface in heat.boundaries of the solid, or couple an external program"},
     {fluid,
      "temperature thermal heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh buoyancy boussinesq "
      "expansion energy-equation natural-convection viscous-heating dissipation heat-source",

@@ -37,6 +37,7 @@ FIGURES = {  # page: (picture that its commands draw, width of the figure)
     "how-to/modes": ("part/out/part/mode-1.png", 700),
     "how-to/drag-and-lift": ("street/out/fluid/coefficients.png", 760),
     "how-to/heat-in-the-fluid": ("warm/out/fluid/heat.png", 760),
+    "how-to/conjugate-heat": ("plate/out/plate.png", 760),
     "how-to/rigid-bodies": ("valve/out/leaflet/probes.png", 640),
     "how-to/paraview": ("flap/out/solid/equivalent-stress.png", 500),
     "how-to/pressure-vessel": ("vessel/out/vessel/equivalent-stress.png", 560),
