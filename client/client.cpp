@@ -75,6 +75,7 @@ void send_reply(couplet_client& c) {
     head.integers({c.iterations});
     head.real(c.error);
     head.real(c.energy);
+    head.real(NAN);  // change of the solution
     head.names(c.output);
     head.integers({c.surface.dim, 0});  // dimension, comparable to earlier passes
     head.data(first ? c.takes : std::vector<Datum>{});

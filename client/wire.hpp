@@ -20,7 +20,7 @@
 
 namespace couplet::wire {
 
-constexpr std::int64_t version = 7, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
+constexpr std::int64_t version = 8, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
                        hello_mark = 0x434f55504c4554;
 constexpr int join_tag = 100, command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104,
               output_tag = 105;

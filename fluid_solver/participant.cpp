@@ -14,7 +14,6 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "common/time/steadiness.hpp"
 #include "fluid_solver/motion/scene.hpp"
 #include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/state/state.hpp"
@@ -244,6 +243,7 @@ void FluidParticipant<D>::begin_step(const coupling::Step& step) {
     keep_volume(*fluid_, points, step.time);
   }
   if (step.number == 0) log_impulse();
+  judge_frozen_flow();
   predicted_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
 }
@@ -301,12 +301,7 @@ void FluidParticipant<D>::place_structure(const coupling::Exchange& in) {
 template <int D>
 coupling::Exchange FluidParticipant<D>::forces() const {
   coupling::Exchange out;
-  if (conjugate_) {
-    const std::vector<double> heat = fluid_->heat()->mean_heat();
-    std::vector<double> given;
-    for (const Index face : conjugate_->faces()) given.push_back(heat[face - mesh_.n_interior]);
-    out["heat"] = conjugate_->gather_faces(given, 1);
-  }
+  if (conjugate_) give_heat(out);
   if (!interface_) return out;
   const std::vector<Index>& faces = interface_->faces();
   const bool is_carried = !prescribed_ && step_.scheme != coupling::Scheme::standalone;
@@ -333,20 +328,6 @@ coupling::Exchange FluidParticipant<D>::forces() const {
   return out;
 }
 
-/// Without values yet, as in the first step, no heat passes.
-template <int D>
-void FluidParticipant<D>::take_film(const coupling::Exchange& in) {
-  const std::vector<double> coefficient = conjugate_->scatter_faces(datum(in, "film-coefficient"), 1),
-                            ambient = conjugate_->scatter_faces(datum(in, "ambient-temperature"), 1);
-  std::vector<double> film(mesh_.boundary.n_owned(), 0.), beyond = film;
-  for (std::size_t i = 0; i < coefficient.size(); ++i) {
-    const Index b = conjugate_->faces()[i] - mesh_.n_interior;
-    film[b] = coefficient[i];
-    beyond[b] = ambient[i];
-  }
-  fluid_->heat()->set_film(std::move(film), std::move(beyond));
-}
-
 /// Share of a change between passes that the pressure solver may leave. Passes of the semi-implicit scheme
 /// start from the last one, so the rest decreases; those of the implicit scheme start from the beginning. The audit of
 /// explicit coupling measures the response to a change and must resolve it (1 % more iterations).
@@ -367,7 +348,12 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
     return;
   }
   const auto [unseen, of_all] = fluid_->unseen_share(w);
-  if (!renewal_.wanted(mesh_.comm, w, unseen, of_all)) return fluid_->repeat_heat();
+  if (!renewal_.wanted(mesh_.comm, w, unseen, of_all)) {
+    if (!conjugate_) return;
+    // A film acts in all sub-steps; only the last one is still at hand.
+    return fluid_->statistics().sub_steps > 1 ? fluid_->prepare(points_, renewal_.guess())
+                                              : fluid_->repeat_heat();
+  }
   renewed_now_ = true;
   fluid_->prepare(points_, renewal_.guess());
 }
@@ -405,21 +391,6 @@ coupling::StepReport FluidParticipant<D>::accept_step() {
   return {.dt = step_.dt,
           .iterations = effort() - before,
           .energy = only_conducts ? coupling::StepReport::unknown : energy};
-}
-
-/// Larger of that of the velocity and that of the temperature, over its range.
-template <int D>
-double FluidParticipant<D>::change() const {
-  const State<D>& s = fluid_->state();
-  if (s.u_old.empty()) return coupling::StepReport::unknown;
-  const std::size_t owned = std::size_t(mesh_.cells.n_owned());
-  double most = 0;
-  if (!fluid_->heat() || !fluid_->heat()->freezes_flow(step_.time))
-    most = time::change_over_size(mesh_.comm, flat<D>(s.u).first(owned * D), flat<D>(s.u_old));
-  if (s.heat.is_solved)
-    most = std::max(most, time::change_over_range(mesh_.comm, std::span(s.heat.temperature).first(owned),
-                                                  s.heat.temperature_old));
-  return most;
 }
 
 template <int D>

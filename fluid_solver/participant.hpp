@@ -73,10 +73,12 @@ class FluidParticipant final : public coupling::Participant {
   void set_up_motion();
   void set_up_interface(const mesh::Geometry& geometry);
   void log_impulse() const;
+  void judge_frozen_flow() const;
   std::vector<Vec3> receive_points();
   void place_structure(const coupling::Exchange& in);
   coupling::Exchange forces() const;
   void take_film(const coupling::Exchange& in);
+  void give_heat(coupling::Exchange& out) const;
   void log_sub_steps();
 
   const mesh::Mesh mesh_;

@@ -43,6 +43,7 @@ constexpr std::array ids{
     FindingId{answer, "resolved-walls", "a turbulence model is used, but the mesh does not resolve the flow at the walls"},
     FindingId{answer, "eddy-viscosity-in-two-dimensions", "a turbulence model is used in two dimensions or on a mesh one cell deep, where it only adds viscosity"},
     FindingId{answer, "viscosity-law", "a viscosity law whose viscosity hardly varies, so that a number would do"},
+    FindingId{answer, "frozen-flow", "the flow was still changing when it was frozen for the computation of the temperature alone"},
     FindingId{answer, "ringing-pressure", "pressure waves that the time steps do not resolve oscillate undamped, because the trapezoidal rule does not damp them"},
     FindingId{answer, "small-changes-of-density", "the density of a weakly compressible fluid changes too much for the model"},
     FindingId{neglected, "turbulence-model", "the mesh does not resolve the shear layers at this Reynolds number", {"fluid_solver", "turbulence", "largest Reynolds number of the shear within a cell; limit 50, or 250 if the walls are resolved (y+ up to 1). A flow whose Reynolds number with the hydraulic diameter is below 3450 counts as laminar"}},

@@ -99,7 +99,7 @@ void declare(config::Section& s, HeatParameters& h) {
       .not_negative()
       .doc(
           "time from which the flow stays as it is and only the temperature is computed, with steps of any size; for heat that "
-          "spreads much more slowly than the flow. Default: never");
+          "spreads much more slowly than the flow settles. Default: never");
   s.check(
       [&h] {
         if (h.frozen_flow && !h.gravity.empty())

@@ -82,9 +82,7 @@ class Fluid {
   /// The temperature, or nullptr without heat. A film is set before prepare() or repeat_heat().
   HeatTransport<D>* heat() { return step_.heat(); }
   /// Computes the temperature of the last sub-step again, for another film. Call after prepare().
-  void repeat_heat() {
-    if (step_.heat()) step_.heat()->advance(level());
-  }
+  void repeat_heat() { step_.heat()->advance(level()); }
   /// Sets the turn (see turn_of()) of interface and body faces at the end of the step; zero at other walls.
   /// Empty if they do not rotate. Call before solve_pressure().
   void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }

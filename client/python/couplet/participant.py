@@ -25,7 +25,7 @@ from mpi4py import MPI  # MPI starts here
 
 from couplet.relay import OverMpi, OverSocket, wait as _wait
 
-VERSION, COMMAND, REPLY, HELLO = 7, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+VERSION, COMMAND, REPLY, HELLO = 8, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
 JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
@@ -305,7 +305,7 @@ class Client:
             head += (
                 _reals(time.monotonic() - self._started, self._advised, self.dt)
                 + _integers(0)
-                + _reals(math.nan, math.nan)
+                + _reals(math.nan, math.nan, math.nan)
             )
             head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0)
             for data in (self._takes, self._gives):

@@ -95,7 +95,7 @@ void declare(config::Section& section, SimulationParameters& p) {
   section.value("until-steady", p.until_steady)
       .range(1e-12, 0.1)
       .doc(
-          "end the run before 'end-time' once the distance from the steady state, estimated from the changes of the last steps, is "
+          "end the run before 'end-time' once the distance from the steady state, estimated from the changes of six equal steps, is "
           "below this share of the solution in all programs that tell (fluid_solver, solid_solver). Default: never");
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)

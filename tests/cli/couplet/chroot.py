@@ -124,7 +124,7 @@ def joined(system, user, entry):
     for words in ("new cylinder --from spring-cylinder --end-time '0.05 s'", "run cylinder -q", "run cylinder -q --set simulation.output.folder=out-cpp --with body='./spring_cylinder body 2 0 8 0.01'"):
         system.must(f"{entry} {words}", user=user, folder=home)
     found = system.must("PKG_CONFIG_PATH=$(dirname $(find /usr/lib -path '*couplet/precice*' -name libprecice.pc)) pkg-config --cflags --libs libprecice", user=user).strip()
-    system.must(f"g++ -std=c++20 oscillators.cpp -o oscillators $(pkg-config --cflags mpi-cxx) {found} $(pkg-config --libs mpi-cxx)", user=user, folder=home)
+    system.must(f"mpicxx -std=c++20 oscillators.cpp -o oscillators {found}", user=user, folder=home)
     for words in ("import precice-config.xml", "run precice-config.yaml -q --with Left='./oscillators Left precice-config.xml 1' --with Right='./oscillators Right precice-config.xml 1'"):
         system.must(f"{entry} {words}", user=user, folder=home)
 

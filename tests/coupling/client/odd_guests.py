@@ -15,13 +15,13 @@ SLOWER = float(os.environ.get("COUPLET_SLOWER", "1"))
 SECONDS = 20 * SLOWER
 # stage, how, what must be said
 SCENES = [
-    ("handshake", "3", ["(an external program) uses version 3 of the protocol", "here use version 7"]),
-    ("handshake", "8", ["(an external program) uses version 8 of the protocol", "here use version 7"]),
+    ("handshake", "3", ["(an external program) uses version 3 of the protocol", "here use version 8"]),
+    ("handshake", "9", ["(an external program) uses version 9 of the protocol", "here use version 8"]),
     ("handshake", "mark", ["is not a Couplet program", "begins with 42"]),
     ("introduction", "nothing", ["it has 0 fields, but 9 are expected"]),
     ("introduction", "words", ["not a whole number"]),
     ("introduction", "ends", ["it has 0 fields"]),
-    ("reply", "version", ["The reply of 'body' to initialise", "protocol version 8", "uses version 7"]),
+    ("reply", "version", ["The reply of 'body' to initialise", "protocol version 9", "uses version 8"]),
     ("reply", "mark", ["The reply of 'body' to initialise", "not the expected reply"]),
     ("reply", "status", ["'body'", "the status as 9; expected 0 to 2"]),
     ("reply", "dimension", ["'body'", "the dimension as 4; expected 2 to 3"]),

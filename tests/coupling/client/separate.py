@@ -209,7 +209,7 @@ def strangers(number):
             wrong = "0" * len(token)
             check("a wrong token is refused", "the token is wrong" in answer(place, f"couplet-join 6 {wrong} 0 1 body\n".encode()))
             check("so is part of the token", "the token is wrong" in answer(place, f"couplet-join 6 {token[:32]} 0 1 body\n".encode()))
-            check("another version", "not the greeting of version 7" in answer(place, f"couplet-join 4 {token} 0 1 body\n".encode()))
+            check("another version", "not the greeting of version 8" in answer(place, f"couplet-join 4 {token} 0 1 body\n".encode()))
             check("another participant", "the relay of 'body'" in answer(place, f"couplet-join 6 {token} 0 1 fluid\n".encode()))
             check("another number of processes", "expected process 0 of 1" in answer(place, f"couplet-join 6 {token} 1 2 body\n".encode()))
             with connect(place):  # says nothing and stays: refused after a second

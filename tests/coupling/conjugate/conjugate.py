@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Heat between a fluid and a solid. wall: a composite wall against its closed form, on 1, 2 and 3 ranks. energy: an insulated one keeps its heat. order:
-second order in time while its left side warms up. passes: iterations per step for ratios of the conductances, steps and orders, where the temperature
+second order in time while its left side warms up. substeps: the schemes agree where the fluid divides its steps. steady: a run with a frozen flow
+ends by itself. passes: iterations per step for ratios of the conductances, steps and orders, where the temperature
 varies along the wall. restart: a flap in a hot stream goes on bit for bit, and on more ranks. alone: each program by itself is refused. With a JSON file,
 it keeps the numbers for `scripts/validate heat`. Usage: conjugate.py BIN PART [JSON]"""
 import csv
@@ -79,6 +80,28 @@ def insulated(folder):
     within("insulated wall: change of the heat of both in 80 steps, of what passes [1]", float(np.ptp(total) / (fluid[0] - fluid[-1])), 0, 1e-10)
 
 
+def sub_steps(folder):
+    """A film acts in all sub-steps, whichever scheme repeats them."""
+    heats = []
+    for scheme in ("auto", "implicit"):
+        out = wall(folder, "participants.fluid.time-step=0.1 s", f"coupling.scheme={scheme}", "coupling.convergence.relative=1e-8", "simulation.end-time=5 s")
+        heats.append(column(out, "coupler/amounts.csv", "solid takes heat [W]"))
+    within("five sub-steps of the fluid: difference of the schemes [1]", float(np.abs(heats[0] - heats[1]).max() / np.abs(heats[1]).max()), 0, 1e-6)
+
+
+def steady(folder):
+    """The flow is frozen after 5 s, and the run ends by itself at the exact heat; a restart ends at the same step."""
+    keys = ("participants.fluid.heat.frozen-flow=5 s", "simulation.until-steady=1e-5", "simulation.end-time=1000 s", "simulation.time-step=2.5 s",
+            "simulation.checkpoint={interval: 25 s, keep: 100}", "coupling.convergence.relative=1e-6")
+    out = wall(folder, *keys)
+    t, heat = (column(out, "solid/heat.csv", name) for name in ("time [s]", "left [W]"))
+    within("frozen flow until steady: error of the heat [1]", float(abs(heat[-1] / EXACT - 1)), 0, 2e-5)
+    within("and the time when it ends [s]", float(t[-1]), 30, 200)
+    shutil.copytree(out / "checkpoints/step-00000010", folder / "middle")
+    again = run(folder, *keys, restart="middle")
+    check("a run that goes on ends at the same step", column(again, "solid/heat.csv", "time [s]")[-1] == t[-1] and column(again, "solid/heat.csv", "left [W]")[-1] == heat[-1])
+
+
 def order(folder):
     """The temperature of the left wall rises smoothly; that of the solid's interface after 4 s."""
     values = []
@@ -136,7 +159,7 @@ def alone(folder):
         check(f"{program} alone is refused", done.returncode != 0 and says in told, told[-400:])
 
 
-PARTS = {"wall": composite_wall, "energy": insulated, "order": order, "passes": iterations, "restart": restart, "alone": alone}
+PARTS = {"wall": composite_wall, "energy": insulated, "order": order, "substeps": sub_steps, "steady": steady, "passes": iterations, "restart": restart, "alone": alone}
 with tempfile.TemporaryDirectory(prefix="couplet-conjugate-") as name:
     for chosen in PARTS if part == "all" else [part]:
         place = pathlib.Path(name) / chosen
