@@ -47,7 +47,7 @@ constexpr MissingPhysics table[] = {
     {fluid,
      "temperature thermal heat-transfer conductivity specific-heat thermal-diffusivity prandtl rayleigh buoyancy boussinesq "
      "expansion energy-equation natural-convection viscous-heating dissipation heat-source",
-     "heat in the fluid has constant properties, no sources and no heating by friction, and its buoyancy is that of Boussinesq",
+     "heat in the fluid has constant properties but for the viscosity, no sources and no heating by friction, and its buoyancy is that of Boussinesq",
      "set the section heat and the temperature, heat-flux or film of the patches"},
     {fluid, "casson quemada sutherland oldroyd oldroyd-b viscoelastic thixotropic mixture",
      "constant density, and a viscosity that is constant or a function of the shear rate: no mixtures, no viscoelastic fluids",

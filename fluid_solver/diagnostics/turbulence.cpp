@@ -68,7 +68,8 @@ Shear largest_shear(const FluidView<D>& view) {
   }
   const auto [rho, mu, nu, sound] = view.properties();
   const auto& law = view.parameters().viscosity_law;
-  const std::vector<double> viscosity = law ? viscosity_in_cells<D>(*law, gradient) : std::vector<double>();
+  const std::vector<double> viscosity =
+      law ? viscosity_in_cells<D>(view.parameters(), s, gradient) : std::vector<double>();
   double largest = 0, smallest = law ? std::numeric_limits<double>::infinity() : nu;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const double local = law ? viscosity[c] / rho : nu;
@@ -212,7 +213,7 @@ std::optional<diagnostics::Finding> variation_of_viscosity(const FluidView<D>& v
   const State<D>& s = view.fluid.state();
   std::vector<Tensor<D>> gradient;
   velocity_gradient<D>(view.mesh, *s.placement, s.u, s.u_boundary, gradient);
-  const std::vector<double> viscosity = viscosity_in_cells<D>(*law, gradient);
+  const std::vector<double> viscosity = viscosity_in_cells<D>(view.parameters(), s, gradient);
   std::array<double, 3> sums{};  // power, and its sums of the viscosity and its square
   for (Index c = 0; c < view.mesh.cells.n_owned(); ++c) {
     const double mu = viscosity[c],

@@ -148,6 +148,11 @@ void declare_heat(config::Section& s, FluidParameters& p) {
         return fits ? "" : "one number per component is needed";
       },
       "heat.gravity");
+  s.check(
+      [told = !p.heat && p.viscosity_law && p.viscosity_law->by_temperature] {
+        return told ? "this fluid has no temperature; add the section 'heat', or remove the key" : "";
+      },
+      "viscosity.by-temperature");
   const auto is_moved = [](const BoundaryParameters& b) { return b.type == BoundaryType::interface; };
   const bool conjugate = std::ranges::any_of(p.boundaries, [](const auto& b) { return b.second.conjugate; });
   const bool moved = std::ranges::any_of(p.boundaries, [&](const auto& b) { return is_moved(b.second); });

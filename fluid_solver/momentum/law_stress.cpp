@@ -30,6 +30,8 @@ class LawStress final : public MomentumTerm<D> {
         law_(*parameters.viscosity_law),
         rho_(parameters.density),
         base_(law_.smallest()),
+        factor_(law_.factor()),
+        reference_(parameters.heat ? parameters.heat->reference_temperature : 0),
         is_wall_(rows_.friction.size(), 0) {
     const std::vector<Index> patch = mesh.patch_of_boundary();
     for (std::size_t b = 0; b < is_wall_.size(); ++b)
@@ -40,7 +42,8 @@ class LawStress final : public MomentumTerm<D> {
     const Flow flow = flow_of(s);
     if (!s.excess.empty()) s.excess_old.swap(s.excess);
     s.excess.resize(mesh_.n_flux_faces());
-    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) s.excess[f] = excess(pull(flow, f).shear);
+    set_factors(s.heat.temperature, s.heat.boundary);
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f) s.excess[f] = excess(pull(flow, f).shear, f);
   }
 
   void add_rate(const State<D>& s, bool split, const typename MomentumTerm<D>::Gradient& gradient,
@@ -61,7 +64,7 @@ class LawStress final : public MomentumTerm<D> {
     }
   }
 
-  /// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own viscosity, as that of eddies. On a moving mesh it is the mean of
+  /// The stress of u~ = (1 + r/2) u^n - r/2 u^{n-1} with its own viscosity, as that of eddies, at the temperature extrapolated likewise. On a moving mesh it is the mean of
   /// those on the meshes of both levels, which is second order in time.
   void add_implicit(const State<D>& from, const FluidStep<D>& step, double a, Vectors<D>& rate,
                     std::vector<double>& added) override {
@@ -73,6 +76,15 @@ class LawStress final : public MomentumTerm<D> {
         u_boundary[b] = e0 * from.u_boundary[b] + e1 * from.u_boundary_old[b];
       for (std::size_t b = 0; b < from.turn_old.size(); ++b)
         turn[b] = e0 * from.turn[b] + e1 * from.turn_old[b];
+    }
+    if (!factor_.is_constant()) {
+      const HeatLevel& heat = from.heat;
+      std::vector<double> cells = heat.temperature, at_boundary = heat.boundary;
+      for (std::size_t c = 0; ratio > 0 && c < cells.size(); ++c)
+        cells[c] = e0 * cells[c] + e1 * heat.temperature_old[c];
+      for (std::size_t b = 0; ratio > 0 && b < at_boundary.size(); ++b)
+        at_boundary[b] = e0 * at_boundary[b] + e1 * heat.boundary_old[b];
+      set_factors(cells, at_boundary);
     }
     added.resize(mesh_.n_flux_faces(), 0);
     flux_.assign(rows_.friction.size(), Vec<D>::Zero());
@@ -113,8 +125,19 @@ class LawStress final : public MomentumTerm<D> {
     Vec<D> traction;  // (grad u + grad u^T).S [m^2/s]
   };
 
-  /// Viscosity beyond the constant one [m^2/s].
-  double excess(double shear) const { return (law_(shear) - base_) / rho_; }
+  /// Viscosity of a face beyond the constant one [m^2/s].
+  double excess(double shear, Index f) const {
+    return ((factors_.empty() ? law_(shear) : factors_[f] * law_(shear)) - base_) / rho_;
+  }
+  /// Factors of the faces at temperatures of cells and boundary faces, less the reference [K].
+  void set_factors(const std::vector<double>& cells, const std::vector<double>& boundary) {
+    if (factor_.is_constant()) return;
+    factors_.resize(mesh_.n_flux_faces());
+    for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+      factors_[f] = factor_(reference_ + (f < mesh_.n_interior
+                                              ? 0.5 * (cells[mesh_.owner[f]] + cells[mesh_.neighbour[f]])
+                                              : boundary[f - mesh_.n_interior]));
+  }
   /// True at boundary faces whose velocity follows the fluid without friction.
   bool is_free(Index f) const { return rows_.pressure[f - mesh_.n_interior] > 0; }
 
@@ -164,7 +187,7 @@ class LawStress final : public MomentumTerm<D> {
     const double factor = share * implicit;
     for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
       const Pull here = pull(flow, f);
-      const double nu = excess(here.shear);
+      const double nu = excess(here.shear, f);
       add(f, share * nu * here.traction, rate);
       if (f < mesh_.n_interior || !is_free(f)) added[f] += factor * std::max(nu, before[f]);
     }
@@ -192,6 +215,9 @@ class LawStress final : public MomentumTerm<D> {
   const BoundaryRows& rows_;
   ViscosityLaw law_;
   double rho_, base_;  // [kg/m^3], [Pa s]
+  fv::Property factor_;
+  double reference_;             // [K]
+  std::vector<double> factors_;  // per flux face; empty if the viscosity does not depend on the temperature
   std::vector<char> is_wall_;
   std::vector<Tensor<D>> gradient_;
   Vectors<D> flux_;
@@ -212,9 +238,15 @@ double excess_dissipation(const mesh::Mesh& mesh, const Boundary<D>& boundary,
 }
 
 template <int D>
-std::vector<double> viscosity_in_cells(const ViscosityLaw& law, const std::vector<Tensor<D>>& gradient) {
+std::vector<double> viscosity_in_cells(const FluidParameters& parameters, const State<D>& s,
+                                       const std::vector<Tensor<D>>& gradient) {
+  const ViscosityLaw& law = *parameters.viscosity_law;
   std::vector<double> viscosity;
   for (const Tensor<D>& g : gradient) viscosity.push_back(law(shear_rate<D>(g + g.transpose())));
+  if (!law.by_temperature) return viscosity;
+  const fv::Property factor = law.factor();
+  for (std::size_t c = 0; c < viscosity.size(); ++c)
+    viscosity[c] *= factor(parameters.heat->reference_temperature + s.heat.temperature[c]);
   return viscosity;
 }
 

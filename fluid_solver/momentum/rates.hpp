@@ -81,7 +81,8 @@ Tensor<D> face_gradient(const Placement<D>& at, const Vectors<D>& u, const std::
 
 /// Viscosity of a law in all local cells [Pa s]. The ghosts of `gradient` must be current.
 template <int D>
-std::vector<double> viscosity_in_cells(const ViscosityLaw& law, const std::vector<Tensor<D>>& gradient);
+std::vector<double> viscosity_in_cells(const FluidParameters& parameters, const State<D>& state,
+                                       const std::vector<Tensor<D>>& gradient);
 
 /// Optional part of the momentum equation. Every function itself loops over faces or cells, and is collective.
 template <int D>

@@ -294,7 +294,7 @@ void FlowQuantities<D>::add_in_cells(const RunningStatistics<D>* statistics) {
   }
   if (wanted.viscosity) {
     if (gradient.empty()) velocity_gradient<D>(fluid_.mesh(), *s.placement, s.u, s.u_boundary, gradient);
-    add("viscosity", "Pa s", 1, keep(viscosity_in_cells<D>(*fluid_.parameters().viscosity_law, gradient)), n);
+    add("viscosity", "Pa s", 1, keep(viscosity_in_cells<D>(fluid_.parameters(), s, gradient)), n);
   }
   if (!s.eddy.empty()) add("eddy-viscosity", "m^2/s", 1, s.eddy, n);
   if (statistics)

@@ -311,9 +311,9 @@ struct FluidParameters {
     const double mu = viscosity_law ? viscosity_law->smallest() : viscosity;
     return {density, mu, mu / density, solved_sound(compressibility, density, mu)};
   }
-  /// Viscosity at a shear rate [1/s].
+  /// Largest viscosity at a shear rate [1/s].
   double viscosity_at(double shear_rate) const {
-    return viscosity_law ? (*viscosity_law)(shear_rate) : viscosity;
+    return viscosity_law ? (*viscosity_law)(shear_rate)*viscosity_law->factors().second : viscosity;
   }
 };
 

@@ -26,7 +26,18 @@ double ViscosityLaw::operator()(double rate) const {
   return consistency * std::pow(bounded, index - 1) + yield_stress * yields;
 }
 
-double ViscosityLaw::smallest() const {
+fv::Property ViscosityLaw::factor() const {
+  return by_temperature ? fv::Property(*by_temperature, "viscosity.by-temperature") : fv::Property(1);
+}
+
+std::pair<double, double> ViscosityLaw::factors() const {
+  const fv::Property all = factor();
+  if (all.is_constant()) return {all(0), all(0)};
+  const auto [least, greatest] = std::ranges::minmax(all.table()->values());
+  return {least, greatest};
+}
+
+double ViscosityLaw::smallest_by_shear() const {
   switch (type) {
     case Type::power_law:
       return index == 1 ? (*this)(0) : least;
@@ -39,7 +50,7 @@ double ViscosityLaw::smallest() const {
   }
 }
 
-double ViscosityLaw::largest() const {
+double ViscosityLaw::largest_by_shear() const {
   switch (type) {
     case Type::power_law:
       return index == 1 ? (*this)(0) : most.value_or(infinity);
@@ -156,6 +167,13 @@ void declare(config::Section& s, ViscosityLaw& law) {
              {"cross", Type::cross, keys_of(declare_cross)},
              {"herschel-bulkley", Type::herschel_bulkley, keys_of(declare_herschel_bulkley)}},
             "dependence of the viscosity on the shear rate, see docs/theory/fluid-models.md", true);
+  {
+    config::Key key = s.value("by-temperature", law.by_temperature);
+    key.positive().doc("with `heat`: factor of the viscosity, a table of T [K]");
+  }
+  s.check(
+      [&law] { return law.by_temperature ? fv::problem_of_property(*law.by_temperature) : std::string(); },
+      "by-temperature");
 }
 
 }  // namespace couplet::fluid

@@ -253,9 +253,9 @@ void Fluid<D>::start(const mesh::Geometry& geometry, double time) {
     step_.start_level(at, *level);
     s.pressure[0] = level;
   }
+  if (heat()) heat()->start(s);
   step_.start_terms(s);
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
-  if (auto* heat = step_.heat()) heat->start(s);
   step_.start_momentum(s);
   step_.keep();
 }

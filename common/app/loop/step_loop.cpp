@@ -163,7 +163,13 @@ bool StepLoop::due(double interval) const {
 }
 
 bool StepLoop::is_steady(double change, double dt) {
-  if (!simulation_.until_steady || std::isnan(change)) return false;
+  if (!simulation_.until_steady) return false;
+  if (std::isnan(change)) {
+    if (plan_.finished() && parallel::comm_rank(comm_) == 0)
+      log::warn(
+          "'until-steady' had no effect: no program of this run tells how much a step changes its solution");
+    return false;
+  }
   steadiness_.add(change, dt);
   const double left = steadiness_.left();
   const bool reached = parallel::any(comm_, left <= *simulation_.until_steady);

@@ -44,7 +44,7 @@ YAML = {  # page: for each block (case, section that the block is put into), or 
     "docs/tutorial-solid.md": [("cantilever", "participants.solid"), ("eye-bar", "participants.solid")],
     "docs/how-to/boundary-conditions.md": [("cavity", "participants.fluid"), ("cantilever", "participants.solid")],
     "docs/how-to/choose-coupling.md": [("perpendicular-flap", "")],
-    "docs/how-to/conjugate-heat.md": [("heated-plate", ""), ("hot-stream", "")],
+    "docs/how-to/conjugate-heat.md": [("heated-plate", ""), ("hot-stream", ""), ("heated-plate", "")],
     "docs/how-to/drag-and-lift.md": [("cylinder", "")],
     "docs/how-to/exchange.md": [("thermocline-solar-one-wall", ""), ("perpendicular-flap", "")],
     "docs/how-to/heat-in-the-fluid.md": [("heated-cavity", "")],

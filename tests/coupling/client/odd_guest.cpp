@@ -67,7 +67,7 @@ std::vector<char> head(const std::string& how) {
   out.text("");
   for (const double value : {0., 1e9, 0.}) out.real(value);
   out.integers({0});
-  out.real(NAN), out.real(NAN);
+  out.real(NAN), out.real(NAN), out.real(NAN);
   out.integers({0, how == "dimension" ? 4 : 2, 0});
   const std::string name = how == "name" ? std::string(100000, 'x') : "pressure-force";
   std::vector<Datum> takes{{name, "N", COUPLET_FACES, 0}};

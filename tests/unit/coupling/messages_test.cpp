@@ -100,7 +100,7 @@ TEST(Messages, another_kind_or_version_is_refused) {
   EXPECT_THROW(unpack_command(bytes), Error);
   bytes[8] = 99;  // the version follows the 8-byte mark
   EXPECT_EQ(support::error_of([&] { unpack_reply(bytes, cut); }),
-            "A reply has protocol version 99, but this program uses version 7: use programs of one version.");
+            "A reply has protocol version 99, but this program uses version 8: use programs of one version.");
 }
 
 Interface two_faces() {

@@ -123,7 +123,7 @@ TEST(Checkpoint, an_earlier_version_is_refused_with_file_and_both_versions) {
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_DOUBLE, &before), 0);
   });
   EXPECT_THAT(support::error_of([&] { CheckpointReader(world, scratch / "old.h5"); }),
-              ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 15"),
+              ::testing::AllOf(HasSubstr("old.h5' has format version 4; this program reads version 16"),
                                HasSubstr("with the release that wrote it")));
   EXPECT_THAT(problem_of_checkpoint(scratch / "old.h5"), HasSubstr("format version 4"));
 }

@@ -2,6 +2,7 @@
 // Viscosity laws: fully developed flows beside their closed forms or an ordinary equation, forces on walls, energy and steps.
 #include "fluid_case.hpp"
 #include "fluid_solver/output/derived.hpp"
+#include "heat_case.hpp"
 #include "participant_case.hpp"
 #include "ring_mesh.hpp"
 #include "tests/support/observed_run.hpp"
@@ -346,6 +347,32 @@ TEST(ConstantLaw, gives_what_the_number_gives) {
 }
 
 /// The power that the budget names is what the kinetic energy loses.
+/// Between plates of 300 and 301 K, of which the warm one moves at 1 m/s, under a viscosity of 1 to 3 Pa s: u = ln(1 + 2 y)/ln 3, and the
+/// shear stress is 2/ln 3.
+TEST(ViscosityByTemperature, has_the_closed_form_of_a_sheared_layer) {
+  double error[2], missing = 0;
+  for (int i = 0; i < 2; ++i) {
+    const int n = 16 << i;
+    FluidParameters p = driven_channel(power_law(1, 1));
+    p.viscosity_law->by_temperature.emplace().text = "table(T, 300, 1, 301, 3)";
+    p.body_force.clear();
+    p.heat = warm(1, 1).heat;
+    p.boundaries["ymin"] = at(boundary(BoundaryType::no_slip), "300");
+    p.boundaries["ymax"] = at(boundary(BoundaryType::moving_wall), "301");
+    p.boundaries["ymax"].velocity = {{"1"}, {"0"}};
+    FluidCase<2> c(MPI_COMM_WORLD, strip(n), p);
+    settle(c, 0.02, 4000);
+    error[i] =
+        c.velocity_error([](const Vec3& x) { return Vec3(std::log(1 + 2 * x.y()) / std::log(3.), 0, 0); });
+    missing = wall_force<2>(c, {"ymin"}).x() * n / 2 / (2 / std::log(3.)) - 1;
+  }
+  printf("viscosity by temperature: errors %.2e %.2e, slope %.2f, force off by %.1e\n", error[0], error[1],
+         slope(error[0], error[1]), missing);
+  RecordProperty("slope", std::to_string(slope(error[0], error[1])));
+  EXPECT_GT(slope(error[0], error[1]), 1.9);
+  EXPECT_LT(std::abs(missing), 1e-3);
+}
+
 TEST(ViscosityLaw, takes_the_energy_that_the_budget_names) {
   FluidParameters p = fluid_of(2, 0, 1e-10);
   p.viscosity_law = carreau_yasuda(0.2, 0.02, 2, 0.4, 2);
