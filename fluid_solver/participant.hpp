@@ -41,6 +41,7 @@ class FluidParticipant final : public coupling::Participant {
                    const MotionLink& link);
 
   coupling::Interface initialise() override;
+  double suggest_dt() override;
   void begin_step(const coupling::Step& step) override;
   coupling::Exchange solve(const coupling::Exchange& in) override;
   bool renewed_prediction() const override { return renewed_now_; }

@@ -182,7 +182,7 @@ void require_sums(MPI_Comm comm, const PointSet& from, const PointSet& to,
 void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
   if (n_from == 0 || n_to == 0)
     throw Error(
-        "There are {} {} and {} {}, but an interface needs at least one on each side. Check which patches have type interface.",
+        "There are {} {} and {} {}, but an interface needs at least one on each side. Check which patches have `type: interface` or `conjugate: true`.",
         n_from, from.what, n_to, to.what);
 }
 

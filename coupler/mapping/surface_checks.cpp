@@ -61,7 +61,7 @@ std::string other_extent(const PointBox& a, const std::string& from, const Point
   const double ratio = a.extent() / std::max(b.extent(), 1e-300);
   return fmt::format(
       "The interface of '{}' extends from {} m and that of '{}' from {} m: their positions differ{}. Check "
-      "the meshes' units and positions and which patches are of type interface.",
+      "the meshes' units and positions and which patches have `type: interface` or `conjugate: true`.",
       from, text(a), to, text(b),
       ratio > 5 || ratio < 0.2
           ? fmt::format(", one is {:.3g} times as large as the other", std::max(ratio, 1 / ratio))
@@ -98,10 +98,15 @@ void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
+/// True for data that a body gives to the fluid around it: its motion, its answer to heat.
+bool tells_shape(const coupling::Interface::Datum& datum) {
+  return datum.name == "displacement" || datum.name == "film-coefficient";
+}
+
 /// A participant that takes a motion but gives no load (a heater on a flap) may cover part of a surface.
 bool gives_load(const Side& side) {
   return std::ranges::any_of(side.interface.gives, [](const coupling::Interface::Datum& d) {
-    return d.unit == "N" || d.unit == "Pa";
+    return coupling::is_amount(d) || d.unit == "Pa";
   });
 }
 
@@ -114,7 +119,7 @@ std::vector<SurfaceGroup> groups_of(const std::vector<Side>& sides, const Links&
                                     const Schedule& schedule) {
   std::vector<SurfaceGroup> groups;
   for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement" || sides[link.taker].name == schedule.mover) continue;
+    if (!tells_shape(link.datum) || sides[link.taker].name == schedule.mover) continue;
     if (!gives_load(sides[link.taker])) continue;
     SurfaceGroup joined{{link.giver}, {link.taker}};
     std::erase_if(groups, [&](const SurfaceGroup& g) {
@@ -260,13 +265,13 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
   std::set<std::pair<std::size_t, std::size_t>> compared;
   std::vector<int> givers(sides.size(), 0), fluids(sides.size(), 0);
   for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement") continue;
+    if (!tells_shape(link.datum)) continue;
     ++givers[link.taker];
     const auto& gives = sides[link.taker].interface.gives;
     if (std::ranges::any_of(gives, coupling::is_amount)) ++fluids[link.giver];
   }
   for (const auto& link : links.all()) {
-    if (link.datum.name != "displacement") continue;
+    if (!tells_shape(link.datum)) continue;
     const Side &from = sides[link.giver], &to = sides[link.taker];
     // Each of several bodies has only a part of the fluid's surface, each of several fluids a part of the
     // body's. The matched map has its own check.
@@ -345,7 +350,8 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
            .sentence = fmt::format("the coupled surfaces do not match, so parts of one surface have no "
                                    "partner on the other: {}",
                                    difference),
-           .advice = "check the meshes' units and dimensions, and which patches have `type: interface`"});
+           .advice =
+               "check the meshes' units and dimensions, and which patches have `type: interface` or `conjugate: true`"});
   }
 }
 

@@ -45,6 +45,16 @@ void FluidParticipant<D>::give_heat(coupling::Exchange& out) const {
   out["heat"] = conjugate_->gather_faces(given, 1);
 }
 
+/// The flow is computed no longer than asked for.
+template <int D>
+double FluidParticipant<D>::suggest_dt() {
+  const auto& heat = fluid_->parameters().heat;
+  const double time = fluid_->state().time;
+  if (!heat || !heat->frozen_flow || fluid_->heat()->freezes_flow(time))
+    return coupling::Participant::suggest_dt();
+  return *heat->frozen_flow - time;
+}
+
 /// The first step of a frozen flow tells how much the flow still changed before.
 template <int D>
 void FluidParticipant<D>::judge_frozen_flow() const {
@@ -85,10 +95,12 @@ double FluidParticipant<D>::change() const {
 template void FluidParticipant<2>::take_film(const coupling::Exchange&);
 template void FluidParticipant<2>::give_heat(coupling::Exchange&) const;
 template void FluidParticipant<2>::judge_frozen_flow() const;
+template double FluidParticipant<2>::suggest_dt();
 template double FluidParticipant<2>::change() const;
 template void FluidParticipant<3>::take_film(const coupling::Exchange&);
 template void FluidParticipant<3>::give_heat(coupling::Exchange&) const;
 template void FluidParticipant<3>::judge_frozen_flow() const;
+template double FluidParticipant<3>::suggest_dt();
 template double FluidParticipant<3>::change() const;
 
 }  // namespace couplet::fluid

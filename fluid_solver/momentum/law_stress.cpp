@@ -31,6 +31,7 @@ class LawStress final : public MomentumTerm<D> {
         rho_(parameters.density),
         base_(law_.smallest()),
         factor_(law_.factor()),
+        constant_factor_(factor_.is_constant() ? factor_(0) : 1),
         reference_(parameters.heat ? parameters.heat->reference_temperature : 0),
         is_wall_(rows_.friction.size(), 0) {
     const std::vector<Index> patch = mesh.patch_of_boundary();
@@ -127,7 +128,7 @@ class LawStress final : public MomentumTerm<D> {
 
   /// Viscosity of a face beyond the constant one [m^2/s].
   double excess(double shear, Index f) const {
-    return ((factors_.empty() ? law_(shear) : factors_[f] * law_(shear)) - base_) / rho_;
+    return ((factors_.empty() ? constant_factor_ : factors_[f]) * law_(shear) - base_) / rho_;
   }
   /// Factors of the faces at temperatures of cells and boundary faces, less the reference [K].
   void set_factors(const std::vector<double>& cells, const std::vector<double>& boundary) {
@@ -216,6 +217,7 @@ class LawStress final : public MomentumTerm<D> {
   ViscosityLaw law_;
   double rho_, base_;  // [kg/m^3], [Pa s]
   fv::Property factor_;
+  double constant_factor_;
   double reference_;             // [K]
   std::vector<double> factors_;  // per flux face; empty if the viscosity does not depend on the temperature
   std::vector<char> is_wall_;

@@ -169,7 +169,7 @@ void declare(config::Section& s, ViscosityLaw& law) {
             "dependence of the viscosity on the shear rate, see docs/theory/fluid-models.md", true);
   {
     config::Key key = s.value("by-temperature", law.by_temperature);
-    key.positive().doc("with `heat`: factor of the viscosity, a table of T [K]");
+    key.positive().doc("with `heat`: factor of the viscosity, a number or a table of T");
   }
   s.check(
       [&law] { return law.by_temperature ? fv::problem_of_property(*law.by_temperature) : std::string(); },

@@ -63,7 +63,8 @@ void Heat::require_level(bool is_missing) const {
   if (is_steady() && is_missing)
     throw Error(
         "heat.boundaries: a steady temperature is undetermined without a level; set at least one patch to "
-        "'type: temperature' or to 'type: convection' with a coefficient above 0.");
+        "'type: temperature' or to 'type: convection' with a coefficient above 0; an interface sets none, so that a solid whose level "
+        "the fluid sets needs 'analysis: transient'.");
 }
 
 void Heat::start() {

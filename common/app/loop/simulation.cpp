@@ -96,7 +96,7 @@ void declare(config::Section& section, SimulationParameters& p) {
       .range(1e-12, 0.1)
       .doc(
           "end the run before 'end-time' once the distance from the steady state, estimated from the changes of six equal steps, is "
-          "below this share of the solution in all programs that tell (fluid_solver, solid_solver). Default: never");
+          "below this share of the solution in all programs that tell (fluid_solver, solid_solver); conditions that change later are not foreseen. Default: never");
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
       .doc(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/loop/step_loop.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <chrono>
@@ -173,15 +175,17 @@ bool StepLoop::is_steady(double change, double dt) {
   steadiness_.add(change, dt);
   const double left = steadiness_.left();
   const bool reached = parallel::any(comm_, left <= *simulation_.until_steady);
-  if (parallel::comm_rank(comm_) == 0 && (reached || plan_.finished()))
-    reached
-        ? log::info(
-              "t = {:g} s: steady; what is left of the way there is estimated as {:.2g} of the solution",
-              plan_.time(), left)
-        : log::warn(
-              "t = {:g} s: not steady yet ('until-steady: {:g}'): what is left of the way there is estimated as {:.2g} of the "
-              "solution",
-              plan_.time(), *simulation_.until_steady, left);
+  if (parallel::comm_rank(comm_) != 0) return reached;
+  if (reached)
+    log::info("t = {:g} s: steady; what is left of the way there is estimated as {:.2g} of the solution",
+              plan_.time(), left);
+  else if (plan_.finished() && std::isinf(left))
+    log::warn("t = {:g} s: too few equal steps to tell whether it is steady ('until-steady')", plan_.time());
+  else if (plan_.finished())
+    log::warn(
+        "t = {:g} s: not steady ('until-steady: {:g}'): what is left of the way there is estimated as {}",
+        plan_.time(), *simulation_.until_steady,
+        left < 1 ? fmt::format("{:.2g} of the solution", left) : "more than the solution itself");
   return reached;
 }
 

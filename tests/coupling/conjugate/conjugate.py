@@ -2,7 +2,7 @@
 """Heat between a fluid and a solid. wall: a composite wall against its closed form, on 1, 2 and 3 ranks. energy: an insulated one keeps its heat. order:
 second order in time while its left side warms up. substeps: the schemes agree where the fluid divides its steps. steady: a run with a frozen flow
 ends by itself. passes: iterations per step for ratios of the conductances, steps and orders, where the temperature
-varies along the wall. restart: a flap in a hot stream goes on bit for bit, and on more ranks. alone: each program by itself is refused. With a JSON file,
+varies along the wall. restart: a flap in a hot stream goes on bit for bit, and on more ranks. alone: each program by itself is refused. apart: so are surfaces that do not meet. With a JSON file,
 it keeps the numbers for `scripts/validate heat`. Usage: conjugate.py BIN PART [JSON]"""
 import csv
 import json
@@ -159,7 +159,17 @@ def alone(folder):
         check(f"{program} alone is refused", done.returncode != 0 and says in told, told[-400:])
 
 
-PARTS = {"wall": composite_wall, "energy": insulated, "order": order, "substeps": sub_steps, "steady": steady, "passes": iterations, "restart": restart, "alone": alone}
+def apart(folder):
+    for file in ("case.yaml", "wall.geo"):
+        shutil.copy(HERE / file, folder)
+    for keys, wanted in (("participants.solid.mesh-parameters={n: 8, m: 7, x0: 2, x1: 2.5}", "Check the meshes' units and positions"),
+                         ("coupling.mapping.type=nearest", "do not nest")):
+        done = subprocess.run(mpmd([BIN / program, "case.yaml", f"--set={keys}"] for program in WALL), capture_output=True, text=True, cwd=folder, timeout=60)
+        told = done.stdout + done.stderr
+        check(f"{keys} is refused", done.returncode != 0 and wanted in told, told[-600:])
+
+
+PARTS = {"wall": composite_wall, "energy": insulated, "order": order, "substeps": sub_steps, "steady": steady, "passes": iterations, "restart": restart, "alone": alone, "apart": apart}
 with tempfile.TemporaryDirectory(prefix="couplet-conjugate-") as name:
     for chosen in PARTS if part == "all" else [part]:
         place = pathlib.Path(name) / chosen

@@ -373,6 +373,19 @@ TEST(ViscosityByTemperature, has_the_closed_form_of_a_sheared_layer) {
   EXPECT_LT(std::abs(missing), 1e-3);
 }
 
+TEST(ViscosityByTemperature, may_be_a_number) {
+  double speed[2];
+  for (int i = 0; i < 2; ++i) {
+    FluidParameters p = driven_channel(power_law(i == 0 ? 1 : 2, 1));
+    p.heat = warm(1, 1).heat;
+    if (i == 1) p.viscosity_law->by_temperature.emplace().text = "0.5";
+    FluidCase<2> c(MPI_COMM_WORLD, strip(8), p);
+    settle(c, 0.02, 4000);
+    speed[i] = c.state().largest_speed;
+  }
+  EXPECT_NEAR(speed[1], speed[0], 1e-7 * speed[0]);
+}
+
 TEST(ViscosityLaw, takes_the_energy_that_the_budget_names) {
   FluidParameters p = fluid_of(2, 0, 1e-10);
   p.viscosity_law = carreau_yasuda(0.2, 0.02, 2, 0.4, 2);
